@@ -1,0 +1,343 @@
+//! Numbers as a control reads them: an integer and a count of decimals.
+//!
+//! A machine file says how many decimals an address takes, [`Decimal::round`] rounds once, and from then on
+//! joints, closure and modality are decided on integers. Rounding is that of the correctly rounded text of the
+//! float (ties to even), so `round(x, n)` has the digits that `format!("{x:.n$}")` prints, without the text and
+//! without its negative zero.
+
+use std::cmp::Ordering;
+
+/// The greatest number of decimals.
+pub const MAX_DIGITS: u8 = 18;
+
+/// 10⁰ … 10¹⁸ as integers.
+const POWERS: [i64; 19] = {
+    let mut powers = [1i64; 19];
+    let mut i = 1;
+    while i < 19 {
+        powers[i] = powers[i - 1] * 10;
+        i += 1;
+    }
+    powers
+};
+
+/// 10^`digits` as an integer.
+pub fn power_of_ten(digits: u8) -> i64 {
+    POWERS[usize::from(digits.min(MAX_DIGITS))]
+}
+
+/// Rounds `x` to `digits` decimals and gives it in units of the last one; none where it is not finite or too large.
+///
+/// With s = 10^digits the product x·s is wanted exactly. x is split in two halves of 26 and 27 bits; for
+/// s < 2²⁶ (seven decimals) both products are exact, and so is the error of their sum; above that the error is
+/// carried by a fused multiply-add. The nearest integer to the leading part is then moved by one where the error
+/// says so.
+pub fn round_units(x: f64, digits: u8) -> Option<i64> {
+    let s = power_of_ten(digits) as f64; // exact: 10¹⁸ < 2⁵³·2¹⁸ and 5¹⁸ < 2⁵³
+    let product = x * s;
+    // Also false for NaN. Below 2⁵¹ a quarter is representable, so that ties can be seen and `SHIFT` works.
+    if !(product.abs() < 2_251_799_813_685_248.0) {
+        return None;
+    }
+    let error = if digits <= 7 {
+        // Veltkamp's split: `high` has 26 bits.
+        let c = 134_217_729.0 * x;
+        let high = c - (c - x);
+        let low = x - high;
+        if c.is_finite() { (high * s - product) + low * s } else { x.mul_add(s, -product) }
+    } else {
+        x.mul_add(s, -product)
+    };
+    let nearest = round_ties_even(product);
+    let rest = product - nearest; // exact
+    let mut units = nearest as i64;
+    if rest == 0.5 {
+        // `nearest` is the even neighbour below; the true value may lie above the middle.
+        units += i64::from(0.0 < error);
+    } else if rest == -0.5 {
+        units -= i64::from(error < 0.0);
+    }
+    Some(units)
+}
+
+/// Nearest integer, ties to even, for |x| < 2⁵¹: adding 1.5·2⁵² pushes the fraction out of the mantissa.
+fn round_ties_even(x: f64) -> f64 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (x + SHIFT) - SHIFT
+}
+
+/// The float nearest to `units` / 10^`digits`.
+///
+/// One correctly rounded division of two exact numbers while |units| ≤ 2⁵³; larger integers are rounded first.
+pub fn units_to_f64(units: i64, digits: u8) -> f64 {
+    units as f64 / power_of_ten(digits) as f64
+}
+
+/// A decimal number, normalised: the last digit is not zero unless `digits` is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Decimal {
+    units: i64,
+    digits: u8,
+}
+
+impl Decimal {
+    /// Zero.
+    pub const ZERO: Decimal = Decimal { units: 0, digits: 0 };
+
+    /// `units` / 10^`digits`, normalised.
+    pub fn new(mut units: i64, mut digits: u8) -> Decimal {
+        while 0 < digits && units % 10 == 0 {
+            units /= 10;
+            digits -= 1;
+        }
+        Decimal { units, digits }
+    }
+
+    /// `x` rounded to `digits` decimals; none where it is not finite or too large.
+    pub fn round(x: f64, digits: u8) -> Option<Decimal> {
+        round_units(x, digits).map(|units| Decimal::new(units, digits))
+    }
+
+    /// How many decimals it needs.
+    pub fn digits(self) -> u8 {
+        self.digits
+    }
+
+    /// The number in units of 10^−`digits`; none where it has more decimals than that or is too large.
+    pub fn units(self, digits: u8) -> Option<i64> {
+        let more = digits.checked_sub(self.digits)?;
+        self.units.checked_mul(power_of_ten(more))
+    }
+
+    /// The nearest float.
+    pub fn to_f64(self) -> f64 {
+        units_to_f64(self.units, self.digits)
+    }
+
+    /// The sum, exactly; none on overflow.
+    pub fn plus(self, other: Decimal) -> Option<Decimal> {
+        let digits = self.digits.max(other.digits);
+        Some(Decimal::new(self.units(digits)?.checked_add(other.units(digits)?)?, digits))
+    }
+
+    /// The difference, exactly; none on overflow.
+    pub fn minus(self, other: Decimal) -> Option<Decimal> {
+        self.plus(other.times(-1)?)
+    }
+
+    /// The product with a small integer, exactly; none on overflow.
+    pub fn times(self, factor: i64) -> Option<Decimal> {
+        Some(Decimal::new(self.units.checked_mul(factor)?, self.digits))
+    }
+
+    /// Whether it is zero.
+    pub fn is_zero(self) -> bool {
+        self.units == 0
+    }
+
+    /// Compares by value.
+    pub fn compare(self, other: Decimal) -> Ordering {
+        let digits = self.digits.max(other.digits);
+        match (self.units(digits), other.units(digits)) {
+            (Some(a), Some(b)) => a.cmp(&b),
+            // Only where one of them is beyond 10⁹ with many decimals on the other side; floats are far apart there.
+            _ => self.to_f64().total_cmp(&other.to_f64()),
+        }
+    }
+}
+
+/// How a control wants a number spelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spelling {
+    /// `X30.` instead of `X30`.
+    pub point_always: bool,
+    /// `X+30` instead of `X30`.
+    pub sign_always: bool,
+}
+
+impl Spelling {
+    /// `30`, `-0.5`.
+    pub const PLAIN: Spelling = Spelling { point_always: false, sign_always: false };
+}
+
+/// Writes `units` / 10^`digits` without trailing zeros; zero has no sign unless signs are always written.
+pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling) {
+    if units < 0 {
+        out.push(b'-');
+    } else if spelling.sign_always {
+        out.push(b'+');
+    }
+    let magnitude = units.unsigned_abs();
+    let scale = power_of_ten(digits) as u64;
+    let (whole, mut fraction) = (magnitude / scale, magnitude % scale);
+    let mut buffer = itoa::Buffer::new();
+    out.extend_from_slice(buffer.format(whole).as_bytes());
+    if fraction == 0 {
+        if spelling.point_always {
+            out.push(b'.');
+        }
+        return;
+    }
+    out.push(b'.');
+    let start = out.len();
+    out.resize(start + usize::from(digits), b'0');
+    let mut end = out.len();
+    let mut trailing = true;
+    for place in (start..end).rev() {
+        let digit = (fraction % 10) as u8;
+        fraction /= 10;
+        if trailing && digit == 0 {
+            end = place;
+        } else {
+            trailing = false;
+            out[place] = b'0' + digit;
+        }
+    }
+    out.truncate(end);
+}
+
+impl Decimal {
+    /// Writes the number in a control's spelling.
+    pub fn write(self, out: &mut Vec<u8>, spelling: Spelling) {
+        write_units(out, self.units, self.digits, spelling);
+    }
+}
+
+impl std::fmt::Display for Decimal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = Vec::new();
+        self.write(&mut out, Spelling::PLAIN);
+        f.write_str(std::str::from_utf8(&out).unwrap_or_default())
+    }
+}
+
+/// Why a number could not be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NumberError {
+    /// There is no digit.
+    #[error("a number is missing")]
+    Missing,
+    /// More digits than any control takes.
+    #[error("the number has too many digits")]
+    TooLong,
+}
+
+/// Reads `[sign] digits [. digits]` at the start of `text` and gives it with the length read.
+///
+/// A comma is a decimal point where `comma` says so. No exponent: that is spelled differently on every control.
+pub fn read_decimal(text: &[u8], comma: bool) -> Result<(Decimal, usize), NumberError> {
+    let mut at = 0;
+    let negative = match text.first() {
+        Some(b'-') => {
+            at = 1;
+            true
+        }
+        Some(b'+') => {
+            at = 1;
+            false
+        }
+        _ => false,
+    };
+    let (mut units, mut digits, mut seen, mut point): (u64, u8, bool, bool) = (0, 0, false, false);
+    while let Some(&byte) = text.get(at) {
+        match byte {
+            b'0'..=b'9' => {
+                seen = true;
+                if MAX_DIGITS <= digits || 99_999_999_999_999_999 < units {
+                    // Trailing zeros of a fraction cost nothing.
+                    if point && byte == b'0' {
+                        at += 1;
+                        continue;
+                    }
+                    return Err(NumberError::TooLong);
+                }
+                units = units * 10 + u64::from(byte - b'0');
+                digits += u8::from(point);
+            }
+            b'.' if !point => point = true,
+            b',' if !point && comma => point = true,
+            _ => break,
+        }
+        at += 1;
+    }
+    if !seen {
+        return Err(NumberError::Missing);
+    }
+    let units = units as i64; // below 10¹⁸ by the check above
+    Ok((Decimal::new(if negative { -units } else { units }, digits), at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn text(x: f64, digits: u8) -> String {
+        let mut out = Vec::new();
+        write_units(&mut out, round_units(x, digits).unwrap(), digits, Spelling::PLAIN);
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn no_negative_zero_and_no_trailing_zeros() {
+        assert_eq!(text(-0.000_000_1, 6), "0");
+        assert_eq!(text(30.0, 6), "30");
+        assert_eq!(text(-0.05, 4), "-0.05");
+        assert_eq!(text(100.0, 0), "100");
+    }
+
+    #[test]
+    fn ties_follow_the_exact_value_of_the_float() {
+        assert_eq!(text(0.5, 0), "0");
+        assert_eq!(text(1.5, 0), "2");
+        // 1.005 is 1.00499999999999989…, 2.675 is 2.67499999999999982…
+        assert_eq!(text(1.005, 2), "1");
+        assert_eq!(text(2.675, 2), "2.67");
+        assert!(round_units(f64::NAN, 3).is_none() && round_units(1e16, 0).is_none());
+    }
+
+    #[test]
+    fn spelling_of_points_and_signs() {
+        let mut out = Vec::new();
+        write_units(&mut out, 300_000, 4, Spelling { point_always: true, sign_always: true });
+        out.push(b' ');
+        write_units(&mut out, 0, 4, Spelling { point_always: true, sign_always: false });
+        assert_eq!(out, b"+30. 0.");
+    }
+
+    #[test]
+    fn numbers_are_read_exactly() {
+        assert_eq!(read_decimal(b"-.50X", false), Ok((Decimal::new(-5, 1), 4)));
+        assert_eq!(read_decimal(b"49.", false), Ok((Decimal::new(49, 0), 3)));
+        assert_eq!(read_decimal(b"1,25", true), Ok((Decimal::new(125, 2), 4)));
+        assert_eq!(read_decimal(b"-", false), Err(NumberError::Missing));
+        assert_eq!(read_decimal(b"1234567890123456789012", false), Err(NumberError::TooLong));
+        let zeros = b"1.0000000000000000000000000";
+        assert_eq!(read_decimal(zeros, false), Ok((Decimal::new(1, 0), zeros.len())));
+    }
+
+    proptest! {
+        #[test]
+        fn rounds_as_the_standard_library_prints(x in -1e5f64..1e5, digits in 0u8..=9) {
+            let printed: f64 = format!("{x:.0$}", usize::from(digits)).parse().unwrap();
+            let ours: f64 = text(x, digits).parse().unwrap();
+            prop_assert_eq!(printed, ours);
+        }
+
+        #[test]
+        fn rounds_near_ties_as_the_standard_library_prints(n in -100_000_000i64..100_000_000, digits in 0u8..=9, ulps in -2i64..=2) {
+            let middle = (n as f64 + 0.5) / power_of_ten(digits) as f64;
+            let x = f64::from_bits((middle.to_bits() as i64 + ulps) as u64);
+            let printed: f64 = format!("{x:.0$}", usize::from(digits)).parse().unwrap();
+            prop_assert_eq!(printed, text(x, digits).parse::<f64>().unwrap());
+        }
+
+        #[test]
+        fn what_is_written_reads_back(units in -1_000_000_000_000i64..1_000_000_000_000, digits in 0u8..=9) {
+            let mut out = Vec::new();
+            write_units(&mut out, units, digits, Spelling::PLAIN);
+            let (read, length) = read_decimal(&out, false).unwrap();
+            prop_assert_eq!((read.units(digits), length), (Some(units), out.len()));
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The path of a conical cutter: X, Y, Z and A together, A logarithmic in X.
+//!
+//! A mill with constant rake and spiral angle is ground with the work turning under the wheel
+//! (Jiang and Chen, *Design on Odd-even Steps Third Order Approach Interpolation Algorithm for Logarithmic Curve*):
+//!
+//! ```text
+//! Y = X tan C      Z = X tan C sin r      A = a ln(1 + bX)      a = tan S / tan C      b = 2 tan C / D1      (1) (2) (4)
+//! ```
+//!
+//! a grows without bound as C → 0. With k = ab = 2 tan S / D1 the same curve is
+//!
+//! ```text
+//! A = k X · ln(1 + bX)/(bX)          dA/dX = k/(1 + bX)
+//! ```
+//!
+//! which is finite for a cylinder (C = 0: A = kX), for a straight flute (S = 0: A = 0) and for a reverse taper
+//! (C < 0), legal while 1 + bX > 0. A flute of constant lead has A = kX on any cone; the two laws differ only in
+//! the β of A = k X · ln(1 + βX)/(βX): β = b for constant helix, β = 0 for constant lead.
+//!
+//! **Distance at the cutter's surface**, in mm, between two positions of equal X is √((R ΔA)² + ΔY² + ΔZ²) with
+//! R = D1/2 + X tan C and ΔA in radians.
+//!
+//! The path is that of the contact point. The wheel's radius and profile are not modelled.
+
+use super::elementary::{atan, cos, exp_m1, ln_1p, ln_1p_over, sin, tan};
+use crate::units::{DEGREES, Position};
+
+/// Which way A turns as X grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hand {
+    /// A grows where S > 0.
+    Right,
+    /// A falls where S > 0.
+    Left,
+}
+
+/// How A follows X.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// The helix angle is S at every X: the paper's logarithmic curve.
+    ConstantHelix,
+    /// A is linear in X, with the lead that S gives at D1.
+    ConstantLead,
+}
+
+/// A conical cutter as its drawing states it. Angles in degrees, lengths in millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutter {
+    /// End diameter, at X = 0.
+    pub d1: f64,
+    /// Spiral angle, in the paper's axial sense.
+    pub s: f64,
+    /// Angle of the cone to its axis: the diameter grows by 2 tan C per mm.
+    pub c: f64,
+    /// Rake.
+    pub r: f64,
+    /// Travel along X.
+    pub length: f64,
+    /// Which way A turns.
+    pub hand: Hand,
+    /// How A follows X.
+    pub law: Law,
+}
+
+/// What is wrong with a cutter.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CutterError {
+    /// A value is NaN or infinite.
+    #[error("{0} is not a finite number")]
+    NotFinite(&'static str),
+    /// D1 or length is zero or negative.
+    #[error("{0} must be greater than zero")]
+    NotPositive(&'static str),
+    /// S, C or r reaches a right angle.
+    #[error("{0} must lie between -90 and 90 degrees")]
+    RightAngle(&'static str),
+    /// 1 + bX reaches zero before the end.
+    #[error("the taper reaches diameter zero at X = {at:.4}, before the end")]
+    Vanishes {
+        /// Where the diameter is zero, mm.
+        at: f64,
+    },
+}
+
+/// A curve A(X) with Y and Z, from X = 0 to [`LogCurve::end`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogCurve {
+    /// The angle at X = 0, degrees.
+    pub index: f64,
+    cutter: Cutter,
+    /// k = 2 tan S / D1, with the sign of the hand, rad/mm.
+    k: f64,
+    /// b = 2 tan C / D1, 1/mm.
+    b: f64,
+    /// β: b for constant helix, 0 for constant lead, 1/mm.
+    beta: f64,
+    tan_c: f64,
+    z_slope: f64,
+}
+
+impl LogCurve {
+    /// The path of one flute, indexed by `index` degrees.
+    ///
+    /// # Errors
+    /// A value that is not finite, a diameter or length not above zero, an angle of 90° or more, a reverse taper
+    /// that comes to a point before its end.
+    pub fn new(cutter: Cutter, index: f64) -> Result<LogCurve, CutterError> {
+        let Cutter { d1, s, c, r, length, hand, law } = cutter;
+        for (name, value) in [("D1", d1), ("S", s), ("C", c), ("r", r), ("length", length), ("index", index)] {
+            if !value.is_finite() {
+                return Err(CutterError::NotFinite(name));
+            }
+        }
+        for (name, value) in [("D1", d1), ("length", length)] {
+            if value <= 0.0 {
+                return Err(CutterError::NotPositive(name));
+            }
+        }
+        for (name, value) in [("S", s), ("C", c), ("r", r)] {
+            if 90.0 <= value.abs() {
+                return Err(CutterError::RightAngle(name));
+            }
+        }
+        let tan_c = tan(c / DEGREES);
+        let b = 2.0 * tan_c / d1;
+        if 1.0 + b * length <= 0.0 {
+            return Err(CutterError::Vanishes { at: -1.0 / b });
+        }
+        let turn = match hand {
+            Hand::Right => 1.0,
+            Hand::Left => -1.0,
+        };
+        let beta = match law {
+            Law::ConstantHelix => b,
+            Law::ConstantLead => 0.0,
+        };
+        let k = turn * 2.0 * tan(s / DEGREES) / d1;
+        Ok(LogCurve { index, cutter, k, b, beta, tan_c, z_slope: tan_c * sin(r / DEGREES) })
+    }
+
+    /// The cutter that this is a flute of.
+    pub fn cutter(&self) -> &Cutter {
+        &self.cutter
+    }
+
+    /// The greatest X, mm.
+    pub fn end(&self) -> f64 {
+        self.cutter.length
+    }
+
+    /// The same curve on to another X, where the diameter allows it.
+    pub fn with_end(&self, end: f64) -> Result<LogCurve, CutterError> {
+        LogCurve::new(Cutter { length: end, ..self.cutter }, self.index)
+    }
+
+    /// k = ab = 2 tan S / D1, rad/mm, with the sign of the hand: dA/dX at X = 0.
+    pub fn k(&self) -> f64 {
+        self.k
+    }
+
+    /// The β of the angle's law, 1/mm.
+    pub fn beta(&self) -> f64 {
+        self.beta
+    }
+
+    /// Whether A is linear in X, so that the whole path is one straight line.
+    pub fn is_straight(&self) -> bool {
+        self.k == 0.0 || self.beta == 0.0
+    }
+
+    /// A at X, in radians, without the index.
+    pub fn angle(&self, x: f64) -> f64 {
+        self.k * x * ln_1p_over(self.beta * x)
+    }
+
+    /// dA/dX at X, rad/mm.
+    pub fn slope(&self, x: f64) -> f64 {
+        self.k / (1.0 + self.beta * x)
+    }
+
+    /// dY/dX = tan C.
+    pub fn y_slope(&self) -> f64 {
+        self.tan_c
+    }
+
+    /// dZ/dX = tan C sin r.
+    pub fn z_slope(&self) -> f64 {
+        self.z_slope
+    }
+
+    /// The cutter's radius at X, mm.
+    pub fn radius(&self, x: f64) -> f64 {
+        0.5 * self.cutter.d1 + x * self.tan_c
+    }
+
+    /// The greatest radius between X = 0 and the end, mm.
+    pub fn max_radius(&self) -> f64 {
+        self.radius(0.0).max(self.radius(self.end()))
+    }
+
+    /// X Y Z in mm and A in degrees, A given in radians without the index.
+    pub fn position_with(&self, x: f64, a: f64) -> Position {
+        [x, x * self.tan_c, x * self.z_slope, self.index + a * DEGREES, 0.0, 0.0]
+    }
+
+    /// X Y Z in mm and A in degrees.
+    pub fn position(&self, x: f64) -> Position {
+        self.position_with(x, self.angle(x))
+    }
+
+    /// Path of X Y Z per mm of X.
+    pub fn length_per_x(&self) -> f64 {
+        (1.0 + self.tan_c * self.tan_c + self.z_slope * self.z_slope).sqrt()
+    }
+
+    /// The greatest surface distance that 1 mm of X makes anywhere on the curve.
+    pub fn speed_bound(&self) -> f64 {
+        // R dA/dX = (D1/2)(1 + bX) k/(1 + βX) is k D1/2 for constant helix and monotone in X for constant lead.
+        let surface = |x: f64| self.radius(x) * self.slope(x).abs();
+        let turn = surface(0.0).max(surface(self.end()));
+        (self.length_per_x() * self.length_per_x() + turn * turn).sqrt()
+    }
+
+    /// Points 0 = x₀ < … < xₙ = end that share a fit of order `order` out evenly.
+    ///
+    /// With q = 1 + βX the curve looks alike between q and ρq for every q: pieces of equal ratio have equal error in
+    /// A. At the surface it grows with R ∝ q, so an error ∝ hᵐ is the same in every piece when the joints are equally
+    /// spaced in q^(1/m).
+    pub fn breaks(&self, n: usize, order: f64) -> impl Iterator<Item = f64> + use<> {
+        let (beta, end) = (self.beta, self.end());
+        let last = ln_1p(beta * end) / order; // ln of q^(1/m) at the end
+        let reach = exp_m1(last);
+        (0..=n).map(move |i| {
+            let share = i as f64 / n as f64;
+            if i == 0 {
+                0.0
+            } else if i == n {
+                end
+            } else if reach == 0.0 {
+                share * end
+            } else {
+                exp_m1(order * ln_1p(share * reach)) / beta
+            }
+        })
+    }
+
+    /// The lead at X, mm for one turn: 2π/|dA/dX|; infinite for a straight flute.
+    pub fn lead(&self, x: f64) -> f64 {
+        2.0 * std::f64::consts::PI / self.slope(x).abs()
+    }
+
+    /// The helix angle at X along the cone's axis, degrees: atan(R dA/dX).
+    pub fn helix_axial(&self, x: f64) -> f64 {
+        atan(self.radius(x) * self.slope(x).abs()) * DEGREES
+    }
+
+    /// The helix angle at X along the cone's generatrix, degrees: atan(R dA/dX cos C).
+    pub fn helix_generatrix(&self, x: f64) -> f64 {
+        atan(self.radius(x) * self.slope(x).abs() * cos(self.cutter.c / DEGREES)) * DEGREES
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// The paper's cutter: D1 = 10, S = 30°, C = 5°, r = 8°, 30 mm.
+    pub(crate) fn paper() -> Cutter {
+        Cutter { d1: 10.0, s: 30.0, c: 5.0, r: 8.0, length: 30.0, hand: Hand::Right, law: Law::ConstantHelix }
+    }
+
+    #[test]
+    fn angle_is_the_papers_equation_4() {
+        let curve = LogCurve::new(paper(), 0.0).unwrap();
+        let (a, b) = (tan(30.0 / DEGREES) / tan(5.0 / DEGREES), 2.0 * tan(5.0 / DEGREES) / 10.0);
+        // Both sides are a few roundings from the true value.
+        assert_relative_eq!(curve.angle(28.4736), a * ln_1p(b * 28.4736), max_relative = 4e-16);
+    }
+
+    #[test]
+    fn cylinder_and_straight_flute_are_limits() {
+        let cylinder = LogCurve::new(Cutter { c: 0.0, ..paper() }, 0.0).unwrap();
+        assert_relative_eq!(cylinder.angle(30.0), 30.0 * 2.0 * tan(30.0 / DEGREES) / 10.0, max_relative = 4e-16);
+        // ln(1+ε)/ε = 1 − ε/2, and ε = bX is 1e-8 of a cone angle of 1e-8 rad times 6.
+        let nearly = LogCurve::new(Cutter { c: 1e-8, ..paper() }, 0.0).unwrap();
+        assert_relative_eq!(nearly.angle(30.0), cylinder.angle(30.0), max_relative = 1e-9);
+        assert_eq!(LogCurve::new(Cutter { s: 0.0, ..paper() }, 0.0).unwrap().angle(30.0), 0.0);
+    }
+
+    #[test]
+    fn a_point_before_the_end_is_refused() {
+        let error = LogCurve::new(Cutter { c: -45.0, ..paper() }, 0.0).unwrap_err();
+        assert!(matches!(error, CutterError::Vanishes { at } if (at - 5.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn breaks_run_from_zero_to_the_end() {
+        for c in [5.0, -5.0, 0.0] {
+            let curve = LogCurve::new(Cutter { c, ..paper() }, 0.0).unwrap();
+            let breaks: Vec<f64> = curve.breaks(7, 6.0).collect();
+            assert_eq!((breaks[0], breaks[7]), (0.0, 30.0));
+            assert!(breaks.windows(2).all(|w| w[0] < w[1]), "{breaks:?}");
+        }
+    }
+
+    #[test]
+    fn lead_grows_with_the_diameter() {
+        let curve = LogCurve::new(paper(), 0.0).unwrap();
+        // lead = π D / tan S
+        let d2 = 10.0 + 60.0 * tan(5.0 / DEGREES);
+        assert_relative_eq!(curve.lead(30.0), std::f64::consts::PI * d2 / tan(30.0 / DEGREES), max_relative = 1e-14);
+        assert_relative_eq!(curve.helix_axial(30.0), 30.0, max_relative = 1e-14);
+    }
+}

@@ -1,0 +1,24 @@
+//! Curves in Rⁿ, their fits, and bounds on the distance between them.
+//!
+//! A curve is a function from \[0, 1\] to Rⁿ, n ≤ 6. Nothing here knows a control, a file or a unit beyond
+//! millimetres and degrees. In reading order:
+//!
+//! | module | what |
+//! |---|---|
+//! | [`elementary`] | the only transcendental functions of the project |
+//! | [`logcurve`] | the path of a conical cutter, A = a ln(1 + bX) |
+//! | [`oddeven`] | its points by the odd-even third-order steps |
+//! | [`bernstein`] | polynomials whose coefficients bound them |
+//! | [`bezier`] | one piece of a curve, rational where it must be |
+//! | [`nurbs`] | knots, insertion, pieces to spline and back |
+//! | [`fit`] | few pieces within a tolerance |
+//! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
+
+pub mod bernstein;
+pub mod bezier;
+pub mod deviation;
+pub mod elementary;
+pub mod fit;
+pub mod logcurve;
+pub mod nurbs;
+pub mod oddeven;

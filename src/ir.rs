@@ -1,0 +1,307 @@
+//! The intermediate representation: what the machine is to do, explicit, absolute, metric, free of modes.
+//!
+//! A [`Program`] is a list of [`Step`]s over two kinds of number and two kinds of curve:
+//!
+//! | | numbers | curves |
+//! |---|---|---|
+//! | [`Intent`] and what the passes make of it | `f64` | [`Curve`]: shapes that can be evaluated exactly |
+//! | [`Decimals`], what a control reads | [`Decimal`] | [`Written`]: the same shapes in decimals |
+//!
+//! Every cut carries its feed and every move its whole end point. Modes exist only in text.
+//! A [`Step::Comment`] starts a section: writers forget all modal state there, so that a program can be restarted.
+
+use crate::decimal::{Decimal, units_to_f64};
+use crate::geom::bezier::Bezier;
+use crate::geom::logcurve::LogCurve;
+use crate::geom::nurbs::Nurbs;
+use crate::source::Span;
+use crate::units::{Axes, MAX_AXES, Position};
+
+/// A program: a name, its coordinates, its steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program<N, C> {
+    /// The program's name.
+    pub name: String,
+    /// The coordinates of every position.
+    pub axes: Axes,
+    /// What happens, in order.
+    pub steps: Vec<Located<N, C>>,
+}
+
+/// A step and the text that it came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Located<N, C> {
+    /// What happens.
+    pub step: Step<N, C>,
+    /// Where it was said.
+    pub span: Span,
+}
+
+/// One thing that happens.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step<N, C> {
+    /// A remark for the reader, and the start of a section.
+    Comment(String),
+    /// A tool is called.
+    Tool(u32),
+    /// The spindle turns clockwise, rev/min.
+    Spindle(N),
+    /// Rapid traverse of the axes named (index into the program's axes, end position).
+    Rapid(Vec<(usize, N)>),
+    /// A path at feed.
+    Cut(Cut<N, C>),
+}
+
+/// A path at feed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut<N, C> {
+    /// mm/min along the path of the linear axes; none where the input does not say, and then no program is written.
+    pub feed: Option<N>,
+    /// Whether a motion that was asked for is used here; an approach stays straight lines.
+    pub role: Role,
+    /// The path.
+    pub curve: C,
+}
+
+/// What a cut is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It shapes the work.
+    Path,
+    /// It brings the tool to the work or away.
+    Approach,
+}
+
+/// What was asked: a program, and how exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Intent {
+    /// The program.
+    pub program: Program<f64, Curve>,
+    /// The tolerance of the input, mm, and where it stands.
+    pub tolerance: Option<(f64, Span)>,
+}
+
+/// A shape that can be evaluated exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curve {
+    /// Straight lines.
+    Lines(Polyline),
+    /// Polynomial pieces, joined end to start.
+    Polynomial(Vec<Bezier>),
+    /// A B-spline, rational where its weights differ.
+    Nurbs(Nurbs),
+    /// The control's own curve through points: known at the points only.
+    Through(ThroughKind, Polyline),
+    /// The path of a conical cutter's flute.
+    Logarithmic(Logarithmic),
+}
+
+/// A logarithmic curve and how it is to be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Logarithmic {
+    /// The curve.
+    pub curve: LogCurve,
+    /// How.
+    pub method: Method,
+    /// The instruction step Δl of odd-even steps; none: the largest ≤ 0.2 that holds the tolerance.
+    pub dl: Option<f64>,
+    /// Whole cycles until X reaches or passes the end.
+    pub overrun: bool,
+}
+
+/// How a logarithmic curve is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Odd-even for lines along a curve, direct for splines and for what is straight anyway.
+    Auto,
+    /// The paper's steps: the intent is the polyline through those points.
+    OddEven,
+    /// The curve itself is the intent.
+    Direct,
+}
+
+/// Which curve a control makes of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThroughKind {
+    /// Sinumerik ASPLINE.
+    Akima,
+    /// Sinumerik CSPLINE.
+    Cubic,
+    /// Mazak G06.1, fine spline interpolation.
+    Fine,
+}
+
+/// A start and points, in one flat block of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polyline {
+    /// Where it starts.
+    pub start: Position,
+    /// How many numbers a point has.
+    pub stride: usize,
+    /// The points after the start.
+    pub values: Vec<f64>,
+}
+
+impl Polyline {
+    /// A polyline of no points yet.
+    pub fn new(start: Position, stride: usize) -> Polyline {
+        Polyline { start, stride, values: Vec::new() }
+    }
+
+    /// Adds a point.
+    pub fn push(&mut self, point: &Position) {
+        self.values.extend_from_slice(&point[..self.stride]);
+    }
+
+    /// How many points there are after the start.
+    pub fn count(&self) -> usize {
+        self.values.len() / self.stride
+    }
+
+    /// The points after the start.
+    pub fn points(&self) -> impl Iterator<Item = Position> + '_ {
+        self.values.chunks_exact(self.stride).map(|chunk| {
+            let mut point = [0.0; MAX_AXES];
+            point[..chunk.len()].copy_from_slice(chunk);
+            point
+        })
+    }
+}
+
+/// A position in units of each axis' last decimal.
+pub type Units = [i64; MAX_AXES];
+
+/// A program as a control reads it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decimals {
+    /// The program.
+    pub program: Program<Decimal, Written>,
+    /// How many decimals each axis has.
+    pub digits: [u8; MAX_AXES],
+}
+
+impl Decimals {
+    /// A position in mm and degrees.
+    pub fn position(&self, units: &Units) -> Position {
+        std::array::from_fn(|i| units_to_f64(units[i], self.digits[i]))
+    }
+}
+
+/// A shape in decimals.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Written {
+    /// Straight lines.
+    Lines(WrittenPoints),
+    /// Polynomial blocks.
+    Polynomial(WrittenPolynomial),
+    /// A B-spline.
+    Nurbs(WrittenNurbs),
+    /// The control's own curve through points.
+    Through(ThroughKind, WrittenPoints),
+}
+
+/// A start and points, in units of each axis' last decimal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenPoints {
+    /// Where it starts.
+    pub start: Units,
+    /// How many numbers a point has.
+    pub stride: usize,
+    /// The points after the start.
+    pub units: Vec<i64>,
+    /// The line of the text that each point came from; empty where there is no text yet.
+    pub lines: Vec<u32>,
+}
+
+impl WrittenPoints {
+    /// How many points there are after the start.
+    pub fn count(&self) -> usize {
+        self.units.len() / self.stride
+    }
+
+    /// The points after the start.
+    pub fn points(&self) -> impl Iterator<Item = Units> + '_ {
+        self.units.chunks_exact(self.stride).map(|chunk| {
+            let mut point = [0; MAX_AXES];
+            point[..chunk.len()].copy_from_slice(chunk);
+            point
+        })
+    }
+}
+
+/// Polynomial blocks, joined end to start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenPolynomial {
+    /// Where it starts.
+    pub start: Units,
+    /// The blocks.
+    pub blocks: Vec<PolynomialBlock>,
+}
+
+/// How many coefficients a block can have beside its ends: a₂ … a₅.
+pub const COEFFICIENTS: usize = 4;
+
+/// f(p) = a₀ + a₁p + a₂p² + … for 0 ≤ p ≤ PL; a₀ is the start and a₁ follows from the end:
+///
+/// ```text
+/// a₁ = (end − a₀ − a₂ PL² − … − a₅ PL⁵) / PL
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolynomialBlock {
+    /// The parameter's length.
+    pub pl: Decimal,
+    /// The end.
+    pub end: Units,
+    /// a₂ … a₅ for each axis.
+    pub coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
+    /// The line of the text that it came from, or 0.
+    pub line: u32,
+}
+
+impl PolynomialBlock {
+    /// The block as a Bezier piece from `start`.
+    pub fn to_bezier(&self, digits: &[u8; MAX_AXES], start: &Units) -> Bezier {
+        let degree = 1 + COEFFICIENTS
+            - (0..COEFFICIENTS)
+                .rev()
+                .take_while(|k| self.coefficients.iter().all(|axis| axis[*k].is_zero()))
+                .count();
+        let length = self.pl.to_f64();
+        let mut points = [[0.0; MAX_AXES]; 6];
+        for axis in 0..MAX_AXES {
+            let (first, last) = (units_to_f64(start[axis], digits[axis]), units_to_f64(self.end[axis], digits[axis]));
+            let mut a = [first, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let mut power = length;
+            let mut rest = last - first;
+            for k in 0..COEFFICIENTS {
+                power *= length;
+                a[k + 2] = self.coefficients[axis][k].to_f64();
+                rest -= a[k + 2] * power;
+            }
+            a[1] = rest / length;
+            let ordinates = Bezier::ordinates(&a[..=degree], length);
+            for i in 0..=degree {
+                points[i][axis] = ordinates[i];
+            }
+            points[degree][axis] = last;
+        }
+        Bezier::new(&points[..=degree])
+    }
+}
+
+/// A B-spline in decimals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenNurbs {
+    /// Its degree.
+    pub degree: usize,
+    /// The whole clamped knot vector in units of 10^−`knot_digits`.
+    pub knots: Vec<i64>,
+    /// How many decimals a knot has.
+    pub knot_digits: u8,
+    /// The control points, the first one included.
+    pub points: Vec<Units>,
+    /// A weight for each control point, where they differ.
+    pub weights: Option<Vec<Decimal>>,
+    /// The line of the text that each point came from; empty where there is no text yet.
+    pub lines: Vec<u32>,
+}

@@ -1,0 +1,7 @@
+//! splinepost.
+pub mod decimal;
+pub mod diagnostic;
+pub mod geom;
+pub mod ir;
+pub mod source;
+pub mod units;

@@ -1,0 +1,118 @@
+//! Named texts and places in them.
+
+use std::fmt;
+
+/// Which text of a [`Sources`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SourceId(u32);
+
+impl SourceId {
+    /// The program that a compilation wrote and read back; it is no file yet.
+    pub const PROGRAM: SourceId = SourceId(u32::MAX);
+    /// The input: the first text.
+    pub const INPUT: SourceId = SourceId(0);
+}
+
+/// A range of bytes in one text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// Which text.
+    pub source: SourceId,
+    /// The first byte.
+    pub start: u32,
+    /// One beyond the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    /// Bytes `start..end` of `source`.
+    pub fn new(source: SourceId, range: std::ops::Range<usize>) -> Span {
+        let clamp = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+        Span { source, start: clamp(range.start), end: clamp(range.end) }
+    }
+}
+
+/// A named text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// How messages call it: a path, `<stdin>`, `machine sinumerik`.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl Source {
+    /// A named text.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
+        Source { name: name.into(), text: text.into() }
+    }
+}
+
+/// The input and what it names. The library reads no files; whoever calls it loads them.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    files: Vec<Source>,
+    /// The text behind [`SourceId::PROGRAM`], where a failed compilation left one.
+    pub program: Option<Source>,
+}
+
+impl Sources {
+    /// The input alone.
+    pub fn new(input: Source) -> Sources {
+        Sources { files: vec![input], program: None }
+    }
+
+    /// Adds a text.
+    pub fn push(&mut self, source: Source) -> SourceId {
+        self.files.push(source);
+        SourceId(self.files.len() as u32 - 1)
+    }
+
+    /// The text behind an id.
+    pub fn get(&self, id: SourceId) -> Option<&Source> {
+        if id == SourceId::PROGRAM { self.program.as_ref() } else { self.files.get(id.0 as usize) }
+    }
+}
+
+/// A line and a column, both from 1; columns count characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineColumn {
+    /// From 1.
+    pub line: usize,
+    /// From 1, in characters.
+    pub column: usize,
+}
+
+impl LineColumn {
+    /// Where byte `at` of `text` stands.
+    pub fn of(text: &str, at: usize) -> LineColumn {
+        let mut at = at.min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        let before = &text[..at];
+        let start = before.rfind('\n').map_or(0, |i| i + 1);
+        LineColumn {
+            line: before.bytes().filter(|b| *b == b'\n').count() + 1,
+            column: before[start..].chars().count() + 1,
+        }
+    }
+}
+
+impl fmt::Display for LineColumn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters() {
+        let text = "a\n\"Δl\" = 1\n";
+        assert_eq!(LineColumn::of(text, text.find('=').unwrap()), LineColumn { line: 2, column: 6 });
+        assert_eq!(LineColumn::of(text, 999), LineColumn { line: 3, column: 1 });
+    }
+}
