@@ -1,7 +1,313 @@
-//! splinepost.
+//! splinepost: a compiler and postprocessor for NC programs that writes the control's own splines and proves that the
+//! program does what was asked.
+//!
+//! ```text
+//!  cutter.toml ── parse ─> Intent ─ settle ─ interpolate ─ convert ─ quantise ─ check ─> Legal ─ write ─> text
+//!                            └──────────────────── verify <──── read <───────────────────────────────────┘
+//! ```
+//!
+//! Five words carry the design.
+//!
+//! - [`source::Source`]: a named text. Everything wrong in it is reported with a span.
+//! - [`ir::Program`]: the intermediate representation. Explicit, absolute, metric, dialect-free, mode-free.
+//! - [`pass::check::Legal`]: a program in decimals that fits one machine. Only `check` makes one; only writers take one.
+//! - [`dialect::Dialect`]: a value with a `write` and a `read`, which are inverses and live in one folder.
+//! - [`machine::Machine`]: one machine file: dialect, axes, digits, header and footer, what its splines take.
+//!
+//! The library reads no files, prints nothing and does not panic on any input. [`compile`] is the whole of it, from top
+//! to bottom; the modules in reading order:
+//!
+//! | module | what |
+//! |---|---|
+//! | [`source`], [`diagnostic`] | texts, places, and everything that a user is told |
+//! | [`units`], [`decimal`] | axes and positions; numbers as a control reads them |
+//! | [`ir`], [`dump`] | programs, and programs as text |
+//! | [`geom`] | curves, fits, and the bounds that are the proof |
+//! | [`machine`], [`tables`] | machine files |
+//! | [`front`] | what a user writes |
+//! | [`pass`] | from what was asked to what one machine takes |
+//! | [`dialect`] | how controls spell it, and reading it back |
+//! | [`verify`] | the proof |
+//! | [`points`] | the table of interpolated points |
+//! | [`summary`] | what a compilation tells |
+
 pub mod decimal;
 pub mod diagnostic;
+pub mod dialect;
+pub mod dump;
+pub mod front;
 pub mod geom;
 pub mod ir;
+pub mod machine;
+pub mod pass;
+pub mod points;
 pub mod source;
+pub mod summary;
+pub mod tables;
 pub mod units;
+pub mod verify;
+
+use diagnostic::{Diagnostic, Diagnostics};
+use dialect::{Form, Motion};
+use front::Language;
+use ir::{Curve, Cut, Intent, Located, Method, Role, Step, Written};
+use machine::Machine;
+use source::{Source, SourceId, Sources};
+use units::{DEGREES, Kind};
+use verify::Report;
+
+/// What the command line may say beside input and machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// The motion for cutting pieces; none: the machine's, or `auto`.
+    pub motion: Option<&'static Motion>,
+    /// How curves are followed; none: as the input says.
+    pub method: Option<Method>,
+    /// mm; none: the input's, or the machine's.
+    pub tolerance: Option<f64>,
+    /// Write the program without its proof, and say so in it.
+    pub no_verify: bool,
+}
+
+/// A program and its proof.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// The text.
+    pub text: String,
+    /// What was proved; none under `no_verify`.
+    pub report: Option<Report>,
+    /// The motion that cutting pieces have.
+    pub motion: &'static Motion,
+    /// What was asked, with all that the input left open settled.
+    pub intent: Intent,
+    /// The tolerance that held, mm.
+    pub tolerance: f64,
+    /// What to know.
+    pub warnings: Diagnostics,
+}
+
+/// A compilation that came to nothing.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// Why.
+    pub diagnostics: Diagnostics,
+    /// The program that did not verify, behind [`SourceId::PROGRAM`].
+    pub program: Option<Source>,
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(diagnostics: Diagnostics) -> Failure {
+        Failure { diagnostics, program: None }
+    }
+}
+
+/// Compiles an input for a machine, reads the program back and proves it.
+///
+/// # Errors
+/// The input is wrong, the machine cannot do it, or the program does not verify.
+pub fn compile(sources: &Sources, language: &Language, machine: &Machine, options: &Options) -> Result<Output, Failure> {
+    let intent = with_options((language.parse)(sources)?, options);
+    let machine = machine.with_axes(&intent.program.axes)?;
+    let tolerance = tolerance(&intent, &machine, options)?;
+    let mut warnings = Diagnostics::new();
+    let motion = match options.motion.or(machine.motion) {
+        Some(motion) => motion,
+        None => {
+            let chosen = pass::choose::choose(&intent, &machine, tolerance)?;
+            warnings.extend(chosen.warnings);
+            chosen.value
+        }
+    };
+    let intent = pass::settle::settle(&intent, motion.form, tolerance)?;
+    // Rounding costs something. What is left of the tolerance is for the fit; where the whole turns out too dear,
+    // the fit is made finer. Lines are never refined: their points are asked for as they are.
+    let left = tolerance - resolution(&intent, &machine).min(0.5 * tolerance);
+    let mut failure = Failure::from(Diagnostics::new());
+    for share in [1.0, 0.7, 0.4, 0.2, 0.05] {
+        match attempt(&intent, motion, &machine, tolerance, share * left, options.no_verify) {
+            Ok((text, report, found)) => {
+                warnings.extend(found);
+                if let Some(report) = &report {
+                    warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
+                }
+                return Ok(Output { text, report, motion, intent, tolerance, warnings });
+            }
+            Err(error) => {
+                let refine = error.diagnostics.0.iter().all(|d| d.id == "deviation-too-large");
+                failure = error;
+                if !refine {
+                    break;
+                }
+            }
+        }
+    }
+    Err(failure)
+}
+
+/// One way through all passes, with a fit of its own tolerance.
+fn attempt(
+    intent: &Intent,
+    motion: &Motion,
+    machine: &Machine,
+    tolerance: f64,
+    fit: f64,
+    no_verify: bool,
+) -> Result<(String, Option<Report>, Diagnostics), Failure> {
+    let program = pass::interpolate::interpolate(intent, motion.form, machine, fit, tolerance)?;
+    let mut program = pass::convert::convert(program, motion.form, machine)?;
+    if no_verify && let Some(span) = program.steps.first().map(|located| located.span) {
+        program.steps.insert(0, Located { step: Step::Comment("NOT VERIFIED".to_owned()), span });
+    }
+    let decimals = pass::quantise::quantise(program, motion.form, machine, tolerance, radius(intent))?;
+    let legal = pass::check::check(decimals, machine)?;
+    let text = (machine.dialect.write)(&legal.value, machine);
+    if no_verify {
+        return Ok((text, None, legal.warnings));
+    }
+    // The reading alone is needed from here on.
+    drop(legal.value);
+    match verify_text(intent, &text, SourceId::PROGRAM, machine, tolerance) {
+        Ok(report) => Ok((text, Some(report), legal.warnings)),
+        Err(diagnostics) => Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) }),
+    }
+}
+
+/// Reads a program and compares it with a settled intent.
+fn verify_text(intent: &Intent, text: &str, id: SourceId, machine: &Machine, tolerance: f64) -> Result<Report, Diagnostics> {
+    let reading = (machine.dialect.read)(text, id, machine)?;
+    verify::verify(intent, &reading.value, text, id, machine, tolerance)
+}
+
+/// A program that exists already, compared with what was asked.
+#[derive(Clone, Debug)]
+pub struct Verified {
+    /// What was proved.
+    pub report: Report,
+    /// What was asked, settled for the form that the program has.
+    pub intent: Intent,
+    /// The tolerance that held, mm.
+    pub tolerance: f64,
+    /// What to know.
+    pub warnings: Diagnostics,
+}
+
+/// Proves a program that exists already, `sources.get(program)`, against the input.
+///
+/// # Errors
+/// Either cannot be read, or the program does something else.
+pub fn verify_program(
+    sources: &Sources,
+    language: &Language,
+    program: SourceId,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Verified, Diagnostics> {
+    let intent = with_options((language.parse)(sources)?, options);
+    let machine = machine.with_axes(&intent.program.axes)?;
+    let tolerance = tolerance(&intent, &machine, options)?;
+    let text = sources.get(program).map_or("", |source| source.text.as_str());
+    let reading = (machine.dialect.read)(text, program, &machine)?;
+    let intent = pass::settle::settle(&intent, form_of(&reading.value.decimals), tolerance)?;
+    let report = verify::verify(&intent, &reading.value, text, program, &machine, tolerance)?;
+    let mut warnings = reading.warnings;
+    warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
+    Ok(Verified { report, intent, tolerance, warnings })
+}
+
+/// The form that a program's paths have: that of its first curve, or lines.
+fn form_of(decimals: &ir::Decimals) -> Form {
+    let curves = decimals.program.steps.iter().filter_map(|located| match &located.step {
+        Step::Cut(cut) => match &cut.curve {
+            Written::Lines(_) => None,
+            Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
+            Written::Nurbs(_) => Some(Form::Nurbs),
+            Written::Through(kind, _) => Some(Form::Through(*kind)),
+        },
+        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+    });
+    curves.take(1).next().unwrap_or(Form::Lines)
+}
+
+fn with_options(mut intent: Intent, options: &Options) -> Intent {
+    if let Some(method) = options.method {
+        for located in &mut intent.program.steps {
+            if let Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) = &mut located.step {
+                log.method = method;
+            }
+        }
+    }
+    intent
+}
+
+/// The greatest radius at which a rotary axis counts, mm.
+fn radius(intent: &Intent) -> f64 {
+    let radii = intent.program.steps.iter().map(|located| match &located.step {
+        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) => log.curve.max_radius(),
+        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 0.0,
+    });
+    radii.fold(0.0, f64::max)
+}
+
+/// What half a unit of the last decimal in every axis makes at the surface, mm.
+fn resolution(intent: &Intent, machine: &Machine) -> f64 {
+    let digits = machine.axis_digits();
+    let mut sum = 0.0;
+    for (i, (_, kind)) in machine.axes.as_slice().iter().enumerate() {
+        let half = 0.5 / decimal::power_of_ten(digits[i]) as f64;
+        let mm = match kind {
+            Kind::Linear | Kind::Direction => half,
+            Kind::Rotary => half / DEGREES * radius(intent),
+        };
+        sum += mm * mm;
+    }
+    f64::sqrt(sum)
+}
+
+/// The tolerance that holds: the command line's, the input's, the machine's.
+///
+/// # Errors
+/// It is not positive, or below what the machine's decimals can carry.
+fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f64, Diagnostics> {
+    let tolerance =
+        options.tolerance.or(intent.tolerance.map(|(tolerance, _)| tolerance)).unwrap_or(machine.tolerance);
+    let place = intent.tolerance.filter(|_| options.tolerance.is_none()).map(|(_, span)| span);
+    let at = |diagnostic: Diagnostic| match place {
+        Some(span) => diagnostic.at(span, ""),
+        None => diagnostic,
+    };
+    if !(0.0 < tolerance && tolerance.is_finite()) {
+        return Err(at(Diagnostic::error("tolerance-range", "the tolerance must be greater than zero")).into());
+    }
+    let least = resolution(intent, machine);
+    if tolerance < least {
+        let message = format!("the tolerance of {tolerance} mm is below what the machine's decimals carry, {least:.2e} mm");
+        let diagnostic = Diagnostic::error("tolerance-below-decimals", message)
+            .hint("allow a larger tolerance, or give the axes more decimals in the machine file");
+        return Err(at(diagnostic).into());
+    }
+    Ok(tolerance)
+}
+
+/// The warning where odd-even steps leave the ideal curve by more than the tolerance, with the Δl that would hold it.
+fn steps_exceed_tolerance(intent: &Intent, report: &Report, tolerance: f64) -> Diagnostics {
+    let mut warnings = Diagnostics::new();
+    let Some(from_ideal) = report.from_ideal.filter(|bound| tolerance < bound.mm) else { return warnings };
+    let first = intent.program.steps.iter().find_map(|located| match &located.step {
+        Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) => Some((log, located.span)),
+        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+    });
+    let Some((log, span)) = first else { return warnings };
+    let message = format!(
+        "the steps leave the ideal curve by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
+        from_ideal.mm
+    );
+    let mut warning = Diagnostic::warning("steps-exceed-tolerance", message).at(span, "");
+    if let Ok(dl) = pass::settle::step(log, tolerance) {
+        // Rounded down, so that the figure named holds.
+        let shown = decimal::Decimal::round((dl * 1.0e4).floor() / 1.0e4, 4).unwrap_or_default();
+        let shown = if shown.is_zero() { format!("{dl:e}") } else { shown.to_string() };
+        warning = warning.hint(format!("dl = {shown} would hold it, and so would a spline motion"));
+    }
+    warnings.push(warning);
+    warnings
+}

@@ -148,6 +148,12 @@ impl LogCurve {
         self.cutter.length
     }
 
+    /// The same curve on a flute indexed by `index` degrees.
+    #[must_use]
+    pub fn with_index(&self, index: f64) -> LogCurve {
+        LogCurve { index, ..*self }
+    }
+
     /// The same curve on to another X, where the diameter allows it.
     pub fn with_end(&self, end: f64) -> Result<LogCurve, CutterError> {
         LogCurve::new(Cutter { length: end, ..self.cutter }, self.index)

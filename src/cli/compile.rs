@@ -1,0 +1,89 @@
+//! `splinepost compile`: the job.
+
+use super::io::{self, Console};
+use super::{MethodName, machine, motion, tolerance};
+use splinepost::diagnostic::Diagnostics;
+use splinepost::front::{self, Language};
+use splinepost::source::{Source, Sources};
+use splinepost::summary::Summary;
+use splinepost::{Options, diagnostic::Diagnostic};
+
+/// Compile an input to an NC program, read it back and prove it
+#[derive(clap::Args, Debug)]
+pub(crate) struct Compile {
+    /// The input file, or - for standard input
+    input: String,
+    /// A built-in machine (see `splinepost machines`) or a machine file
+    #[arg(long, value_name = "MACHINE")]
+    to: String,
+    /// Write to this file instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<String>,
+    /// The motion for cutting pieces: auto, or one of the dialect's
+    #[arg(long, value_name = "MOTION")]
+    motion: Option<String>,
+    /// How curves are followed
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodName>,
+    /// Tolerance in mm, instead of the input's or the machine's
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    tolerance: Option<f64>,
+    /// The input's language, where it cannot be told from its text
+    #[arg(long, value_name = "LANGUAGE")]
+    from: Option<String>,
+    /// Write the program without its proof, and say so in it
+    #[arg(long)]
+    no_verify: bool,
+}
+
+impl Compile {
+    /// Runs it.
+    pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
+        *sources = Sources::new(io::read_source(&self.input)?);
+        let machine = machine(&self.to, sources)?;
+        let language = language(self.from.as_deref(), sources)?;
+        let options = Options {
+            motion: motion(self.motion.as_deref(), &machine)?,
+            method: self.method.map(Into::into),
+            tolerance: self.tolerance,
+            no_verify: self.no_verify,
+        };
+        // `--motion auto` overrules the machine's own choice.
+        let mut machine = machine;
+        if self.motion.as_deref() == Some("auto") {
+            machine.motion = None;
+        }
+        let output = splinepost::compile(sources, language, &machine, &options).map_err(|failure| {
+            sources.program = failure.program;
+            failure.diagnostics
+        })?;
+        match &self.output {
+            Some(path) => io::write_file(path, &output.text)?,
+            None => io::print(&output.text)?,
+        }
+        console.diagnostics(&output.warnings, sources);
+        console.summary(&Summary::new(
+            &output.intent,
+            &machine.name,
+            Some(output.motion.name),
+            &output.text,
+            output.report.as_ref(),
+            output.tolerance,
+        ));
+        Ok(())
+    }
+}
+
+/// The language that `--from` names, or that the input looks like.
+pub(super) fn language(from: Option<&str>, sources: &Sources) -> Result<&'static Language, Diagnostics> {
+    let input = sources.get(splinepost::source::SourceId::INPUT);
+    match from {
+        Some(name) => front::find(name).ok_or_else(|| {
+            let names: Vec<&str> = front::LANGUAGES.iter().map(|language| language.name).collect();
+            Diagnostic::error("language-unknown", format!("`{name}` is not a language"))
+                .hint(format!("known are {}", names.join(", ")))
+                .into()
+        }),
+        None => front::detect(input.unwrap_or(&Source::new("", ""))),
+    }
+}

@@ -1,0 +1,70 @@
+//! `splinepost interpolate`: the point table, as the paper's Table 1.
+
+use super::io::{self, Console};
+use super::{MethodName, machine, tolerance};
+use clap::ValueEnum;
+use splinepost::diagnostic::{Diagnostic, Diagnostics};
+use splinepost::front::cutter;
+use splinepost::ir::Method;
+use splinepost::points::Table;
+use splinepost::source::{SourceId, Sources};
+
+/// Print the interpolated points of a cutter's flute beside the theoretical curve
+#[derive(clap::Args, Debug)]
+pub(crate) struct Interpolate {
+    /// The input file, or - for standard input
+    input: String,
+    /// A machine whose tolerance decides the step, where neither the input nor the command line says
+    #[arg(long, value_name = "MACHINE")]
+    to: Option<String>,
+    /// How the curve is followed
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodName>,
+    /// Tolerance in mm, instead of the input's
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    tolerance: Option<f64>,
+    /// How the table is written to standard output
+    #[arg(long, value_enum, default_value_t = Format::Text, value_name = "FORMAT")]
+    format: Format,
+}
+
+/// How a table is written.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// As the paper prints it
+    Text,
+    /// Comma-separated, in full precision
+    Csv,
+    /// One JSON object
+    Json,
+}
+
+impl Interpolate {
+    /// Runs it.
+    pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
+        *sources = Sources::new(io::read_source(&self.input)?);
+        let default = match &self.to {
+            Some(to) => machine(to, sources)?.tolerance,
+            None => 0.001,
+        };
+        let job = match sources.get(SourceId::INPUT) {
+            Some(input) => cutter::parse(input, SourceId::INPUT)?,
+            None => return Err(Diagnostics::new()),
+        };
+        let tolerance = self.tolerance.or(job.tolerance.map(|(mm, _)| mm)).unwrap_or(default);
+        let Some(mut flute) = job.flutes.into_iter().next() else { return Err(Diagnostics::new()) };
+        if let Some(method) = self.method {
+            flute.method = Method::from(method);
+        }
+        let table = Table::new(&flute, tolerance).map_err(|error| {
+            Diagnostic::refusal("points-too-many", error.to_string()).hint("allow a larger tolerance, or state dl")
+        })?;
+        io::print(&match self.format {
+            Format::Text => table.to_text(),
+            Format::Csv => table.to_csv(),
+            Format::Json => table.to_json(),
+        })?;
+        console.remark(&table.summary());
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! Files, standard streams and the end of the program.
+
+use super::MessageFormat;
+use splinepost::diagnostic::{Diagnostic, Diagnostics, Severity};
+use splinepost::source::{Source, Sources};
+use splinepost::summary::Summary;
+use std::fs;
+use std::io::{self, IsTerminal, Read, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Where messages go and how they look.
+pub(crate) struct Console {
+    format: MessageFormat,
+    color: bool,
+}
+
+impl Console {
+    /// Colour only on a terminal, and not where NO_COLOR is set.
+    pub(crate) fn new(format: MessageFormat) -> Console {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        Console { format, color: wanted && io::stderr().is_terminal() }
+    }
+
+    /// Tells diagnostics on standard error.
+    pub(crate) fn diagnostics(&self, diagnostics: &Diagnostics, sources: &Sources) {
+        let text = match self.format {
+            MessageFormat::Text => diagnostics.render(sources, self.color),
+            MessageFormat::Json => diagnostics.to_json(sources),
+        };
+        Console::to_stderr(&text);
+    }
+
+    /// Tells a summary on standard error.
+    pub(crate) fn summary(&self, summary: &Summary) {
+        let text = match self.format {
+            MessageFormat::Text => summary.render(),
+            MessageFormat::Json => summary.to_json(),
+        };
+        Console::to_stderr(&text);
+    }
+
+    /// Tells a few lines of text on standard error, where messages are for people.
+    pub(crate) fn remark(&self, text: &str) {
+        if self.format == MessageFormat::Text {
+            Console::to_stderr(text);
+        }
+    }
+
+    fn to_stderr(text: &str) {
+        // Where standard error is closed there is nobody left to tell.
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+
+    /// 1 where the answer is no, 2 where something is wrong.
+    pub(crate) fn exit_code(&self, diagnostics: &Diagnostics) -> ExitCode {
+        match diagnostics.worst() {
+            Severity::Refusal => ExitCode::from(1),
+            Severity::Error | Severity::Warning | Severity::Note => ExitCode::from(2),
+        }
+    }
+}
+
+fn failed(id: &'static str, what: &str, path: &str, error: &io::Error) -> Diagnostics {
+    Diagnostic::error(id, format!("{what} {path}: {error}")).into()
+}
+
+/// The bytes of a file, or of standard input for `-`.
+fn read_bytes(path: &str) -> Result<Vec<u8>, Diagnostics> {
+    let mut bytes = Vec::new();
+    let result = if path == "-" {
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| ())
+    } else {
+        if Path::new(path).is_dir() {
+            return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
+        }
+        fs::read(path).map(|read| bytes = read)
+    };
+    match result {
+        Ok(()) => Ok(bytes),
+        Err(error) => Err(failed("file-unreadable", "cannot read", path, &error)),
+    }
+}
+
+/// The text of a file, which must be UTF-8.
+pub(crate) fn read_text(path: &str) -> Result<String, Diagnostics> {
+    String::from_utf8(read_bytes(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
+        Diagnostic::error("not-utf8", format!("{path} is not UTF-8: line {line} has a byte that cannot be read"))
+            .hint("save the file as UTF-8")
+            .into()
+    })
+}
+
+/// A file as a named text.
+pub(crate) fn read_source(path: &str) -> Result<Source, Diagnostics> {
+    let name = if path == "-" { "<stdin>" } else { path };
+    Ok(Source::new(name, read_text(path)?))
+}
+
+/// Writes to standard output. Whoever reads may have seen enough: a broken pipe is no error.
+pub(crate) fn print(text: &str) -> Result<(), Diagnostics> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(failed("output-failed", "cannot write to", "standard output", &error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file beside its target and renames it, so that it is there whole or not at all. Its mode is kept, links are
+/// followed, a device or pipe is written directly.
+pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
+    let fail = |error: &io::Error| failed("output-failed", "cannot write", path, error);
+    let target = fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
+    let old = fs::metadata(&target).ok();
+    if let Some(old) = &old
+        && !old.is_file()
+    {
+        if old.is_dir() {
+            return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
+        }
+        return fs::write(&target, text).map_err(|error| fail(&error));
+    }
+    // A file that may not be written to is not replaced behind its owner's back.
+    if old.is_some() {
+        fs::OpenOptions::new().write(true).open(&target).map_err(|error| fail(&error))?;
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || -> io::Result<()> {
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        if old.is_none() {
+            use std::os::unix::fs::PermissionsExt;
+            // As `open` makes files: the umask takes its share.
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.prefix(".splinepost-").tempfile_in(folder)?;
+        file.write_all(text.as_bytes())?;
+        if let Some(old) = &old {
+            file.as_file().set_permissions(old.permissions())?;
+        }
+        file.as_file().sync_all()?;
+        file.persist(&target)?;
+        Ok(())
+    };
+    write().map_err(|error| fail(&error))
+}

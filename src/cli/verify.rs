@@ -1,0 +1,54 @@
+//! `splinepost verify`: proof on a program that already exists.
+
+use super::compile::language;
+use super::io::{self, Console};
+use super::{MethodName, machine, tolerance};
+use splinepost::Options;
+use splinepost::diagnostic::Diagnostics;
+use splinepost::source::Sources;
+use splinepost::summary::Summary;
+
+/// Prove that an existing program does what an input asks
+#[derive(clap::Args, Debug)]
+pub(crate) struct Verify {
+    /// The program
+    program: String,
+    /// The input that it was made from
+    #[arg(long, value_name = "INPUT")]
+    against: String,
+    /// The machine that it was written for
+    #[arg(long, value_name = "MACHINE")]
+    to: String,
+    /// How curves are followed, instead of as the input says
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodName>,
+    /// Tolerance in mm, instead of the input's or the machine's
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    tolerance: Option<f64>,
+    /// The input's language, where it cannot be told from its text
+    #[arg(long, value_name = "LANGUAGE")]
+    from: Option<String>,
+}
+
+impl Verify {
+    /// Runs it.
+    pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
+        *sources = Sources::new(io::read_source(&self.against)?);
+        let program = io::read_source(&self.program)?;
+        let text = program.text.clone();
+        let id = sources.push(program);
+        let machine = machine(&self.to, sources)?;
+        let language = language(self.from.as_deref(), sources)?;
+        let options = Options {
+            motion: None,
+            method: self.method.map(Into::into),
+            tolerance: self.tolerance,
+            no_verify: false,
+        };
+        let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
+        console.diagnostics(&verified.warnings, sources);
+        let report = Some(&verified.report);
+        console.summary(&Summary::new(&verified.intent, &machine.name, None, &text, report, verified.tolerance));
+        Ok(())
+    }
+}

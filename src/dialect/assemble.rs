@@ -1,0 +1,205 @@
+//! Moves read one by one become a program: straight moves of one feed are gathered into one run.
+//!
+//! The position is unknown until an axis was named. A cut that starts where some axis is unknown (a fragment without
+//! its approach) starts, for that axis, where it ends, and a warning says so.
+
+use crate::decimal::Decimal;
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::ir::{Cut, Decimals, Located, Program, Role, Step, Units, Written, WrittenPoints};
+use crate::machine::Machine;
+use crate::source::{SourceId, Span};
+use crate::units::{Axis, MAX_AXES};
+
+/// A program in the making.
+pub struct Assembler<'m> {
+    /// The machine.
+    pub machine: &'m Machine,
+    /// Which text is read.
+    pub source: SourceId,
+    /// How many decimals each axis has.
+    pub digits: [u8; MAX_AXES],
+    /// Where each axis is, in units of its last decimal.
+    pub position: [Option<i64>; MAX_AXES],
+    /// The feed in force.
+    pub feed: Option<Decimal>,
+    /// What is wrong or strange.
+    pub diagnostics: Diagnostics,
+    /// The program's name.
+    pub name: String,
+    /// The single-letter axes by letter, so that a million words are not compared with names.
+    letters: [Option<u8>; 26],
+    steps: Vec<Located<Decimal, Written>>,
+    run: Option<(WrittenPoints, Span)>,
+    run_feed: Option<Decimal>,
+    warned_start: bool,
+}
+
+impl<'m> Assembler<'m> {
+    /// An empty program.
+    pub fn new(machine: &'m Machine, source: SourceId) -> Assembler<'m> {
+        let mut letters = [None; 26];
+        for (i, (axis, _)) in machine.axes.as_slice().iter().enumerate() {
+            if let [letter] = axis.as_str().as_bytes() {
+                letters[usize::from(letter - b'A')] = Some(i as u8);
+            }
+        }
+        Assembler {
+            machine,
+            source,
+            digits: machine.axis_digits(),
+            position: [None; MAX_AXES],
+            feed: None,
+            diagnostics: Diagnostics::new(),
+            name: String::new(),
+            letters,
+            steps: Vec::new(),
+            run: None,
+            run_feed: None,
+            warned_start: false,
+        }
+    }
+
+    /// The place of bytes `range` of the text.
+    pub fn span(&self, range: std::ops::Range<usize>) -> Span {
+        Span::new(self.source, range)
+    }
+
+    /// Says that something is wrong.
+    pub fn error(&mut self, id: &'static str, message: impl Into<String>, range: std::ops::Range<usize>) {
+        let span = self.span(range);
+        self.diagnostics.push(Diagnostic::error(id, message).at(span, ""));
+    }
+
+    /// Which axis a single letter names.
+    #[inline]
+    pub fn letter(&self, letter: u8) -> Option<usize> {
+        if !letter.is_ascii_uppercase() {
+            return None;
+        }
+        self.letters[usize::from(letter - b'A')].map(usize::from)
+    }
+
+    /// Which axis a name of any length names.
+    pub fn axis(&self, name: &str) -> Option<usize> {
+        Axis::new(name).and_then(|axis| self.machine.axes.index_of(axis))
+    }
+
+    /// A value in units of the axis' last decimal; where it has more decimals, an error.
+    #[inline]
+    pub fn units(&mut self, axis: usize, value: Decimal, range: std::ops::Range<usize>) -> Option<i64> {
+        let units = value.units(self.digits[axis]);
+        if units.is_none() {
+            let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
+            self.error(
+                "digits-too-many",
+                format!("{name} {value} has more decimals than the {digits} that the machine file gives this axis"),
+                range,
+            );
+        }
+        units
+    }
+
+    /// The position where all axes are known; unknown ones from `fallback`, with a warning.
+    pub fn start(&mut self, fallback: &Units, span: Span) -> Units {
+        let mut start = [0; MAX_AXES];
+        for (i, start) in start.iter_mut().enumerate().take(self.machine.axes.count()) {
+            if self.position[i].is_none() && !self.warned_start {
+                self.warned_start = true;
+                self.diagnostics.push(
+                    Diagnostic::warning("start-unknown", "the first cut starts at a position that the text does not say")
+                        .at(span, "starts from an unknown position"),
+                );
+            }
+            *start = self.position[i].unwrap_or(fallback[i]);
+        }
+        start
+    }
+
+    /// The end of a move that names some axes.
+    #[inline]
+    pub fn target(&self, named: &[(usize, i64)]) -> Units {
+        let mut target = [0; MAX_AXES];
+        for (i, position) in self.position.iter().enumerate() {
+            target[i] = position.unwrap_or(0);
+        }
+        for (axis, units) in named {
+            target[*axis] = *units;
+        }
+        target
+    }
+
+    /// The tool that was called last.
+    pub fn tool(&self) -> Option<u32> {
+        self.steps.iter().rev().find_map(|located| match located.step {
+            Step::Tool(number) => Some(number),
+            Step::Comment(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_) => None,
+        })
+    }
+
+    fn arrive(&mut self, point: &Units) {
+        for i in 0..self.machine.axes.count() {
+            self.position[i] = Some(point[i]);
+        }
+    }
+
+    fn flush(&mut self) {
+        if let Some((points, span)) = self.run.take() {
+            let cut = Cut { feed: self.run_feed, role: Role::Path, curve: Written::Lines(points) };
+            self.steps.push(Located { step: Step::Cut(cut), span });
+        }
+    }
+
+    /// Adds a step that is no move.
+    pub fn step(&mut self, step: Step<Decimal, Written>, span: Span) {
+        self.flush();
+        self.steps.push(Located { step, span });
+    }
+
+    /// Adds a rapid of the axes named.
+    pub fn rapid(&mut self, named: &[(usize, i64)], span: Span) {
+        let targets = named.iter().map(|(axis, units)| (*axis, Decimal::new(*units, self.digits[*axis]))).collect();
+        for (axis, units) in named {
+            self.position[*axis] = Some(*units);
+        }
+        self.step(Step::Rapid(targets), span);
+    }
+
+    /// Adds a straight move of the axes named.
+    #[inline]
+    pub fn line(&mut self, named: &[(usize, i64)], line: u32, span: Span) {
+        let stride = self.machine.axes.count();
+        let target = self.target(named);
+        if self.run.is_some() && self.run_feed != self.feed {
+            self.flush();
+        }
+        if self.run.is_none() {
+            let start = self.start(&target, span);
+            self.run_feed = self.feed;
+            self.run = Some((WrittenPoints { start, stride, units: Vec::new(), lines: Vec::new() }, span));
+        }
+        if let Some((points, whole)) = &mut self.run {
+            points.units.extend_from_slice(&target[..stride]);
+            points.lines.push(line);
+            whole.end = span.end;
+        }
+        self.arrive(&target);
+    }
+
+    /// Adds a curve that ends at `end`.
+    pub fn curve(&mut self, curve: Written, end: &Units, span: Span) {
+        let cut = Cut { feed: self.feed, role: Role::Path, curve };
+        self.arrive(end);
+        self.step(Step::Cut(cut), span);
+    }
+
+    /// The program, or what is wrong with it.
+    ///
+    /// # Errors
+    /// The diagnostics hold one.
+    pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
+        self.flush();
+        let warnings = self.diagnostics.into_result()?;
+        let program = Program { name: self.name, axes: self.machine.axes, steps: self.steps };
+        Ok(Warned { value: Decimals { program, digits: self.digits }, warnings })
+    }
+}

@@ -1,0 +1,115 @@
+//! Dialects: how one family of controls spells a program, and how its text is read back.
+//!
+//! A dialect is a value. Its reader and its writer live in one folder because they are inverses and change together.
+//! A *motion* is a dialect's own name for a form of curve: `poly` and `spl` are both polynomial blocks.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`assemble`] | moves read one by one become a program |
+//! | [`block`] | lines, numbers and words that all dialects share |
+//! | [`modal`] | what a writer remembers between blocks |
+//! | [`sinumerik`] | POLY, BSPLINE, ASPLINE, CSPLINE |
+//! | [`heidenhain`] | SPL |
+//! | [`iso`] | Mazak G06.1, G06.2 |
+
+pub mod assemble;
+pub mod block;
+pub mod heidenhain;
+pub mod iso;
+pub mod modal;
+pub mod sinumerik;
+
+use crate::diagnostic::{Diagnostics, Warned};
+use crate::ir::{Decimals, ThroughKind};
+use crate::machine::Machine;
+use crate::pass::check::Legal;
+use crate::source::SourceId;
+use std::ops::Range;
+
+/// How a family of controls is written to and read.
+pub struct Dialect {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub about: &'static str,
+    /// Its motions; `auto` prefers the earlier at equal numbers of blocks.
+    pub motions: &'static [Motion],
+    /// What a program may be called, in words, and whether a name is that.
+    pub naming: (&'static str, fn(&str) -> bool),
+    /// Spells a legal program.
+    pub write: fn(&Legal, &Machine) -> String,
+    /// Reads a program.
+    pub read: fn(&str, SourceId, &Machine) -> Result<Warned<Reading>, Diagnostics>,
+}
+
+impl std::fmt::Debug for Dialect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// What a reader makes of a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The program.
+    pub decimals: Decimals,
+    /// Whether the whole header of the machine file stands before it.
+    pub header: bool,
+    /// Whether the whole footer stands after it.
+    pub footer: bool,
+    /// The first block whose number is not the one that the machine file gives it.
+    pub misnumbered: Option<Range<usize>>,
+}
+
+/// A dialect's own name for a form of curve.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Motion {
+    /// Its name.
+    pub name: &'static str,
+    /// The form.
+    pub form: Form,
+    /// What it is, in one line.
+    pub about: &'static str,
+}
+
+/// The forms that a curve can take on a control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Straight lines.
+    Lines,
+    /// Polynomial blocks.
+    Polynomial {
+        /// Whether a block states its own start through its coefficients, as SPL does, so that they must close on
+        /// the block before exactly.
+        closing: bool,
+    },
+    /// B-splines.
+    Nurbs,
+    /// The control's own curve through points.
+    Through(ThroughKind),
+}
+
+/// All dialects.
+pub const DIALECTS: &[Dialect] = &[sinumerik::DIALECT, heidenhain::DIALECT, iso::MAZAK];
+
+/// The dialect of a name.
+pub fn find(name: &str) -> Option<&'static Dialect> {
+    DIALECTS.iter().find(|dialect| dialect.name == name)
+}
+
+impl Dialect {
+    /// The motion of a name.
+    pub fn motion(&self, name: &str) -> Option<&'static Motion> {
+        self.motions.iter().find(|motion| motion.name == name)
+    }
+
+    /// The motion of a form, the first of its kind.
+    pub fn motion_of(&self, form: Form) -> Option<&'static Motion> {
+        self.motions.iter().find(|motion| motion.form == form)
+    }
+
+    /// The names of its motions, for a message.
+    pub fn motion_names(&self) -> String {
+        self.motions.iter().map(|motion| motion.name).collect::<Vec<_>>().join(", ")
+    }
+}

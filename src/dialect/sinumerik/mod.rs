@@ -1,0 +1,81 @@
+//! Sinumerik 840D, 840D sl, ONE.
+//!
+//! Sources: Siemens *NC Programming* 12.2019 and *Job Planning* 07.2010; details and their certainty in
+//! `docs/dialects/sinumerik.md`.
+//!
+//! # How its curves differ from ours
+//!
+//! **POLY.** One might expect a polynomial block to state all its coefficients. It states the end and a₂, a₃ (to a₅):
+//!
+//! ```text
+//! f(p) = a₀ + a₁p + a₂p² + a₃p³ + a₄p⁴ + a₅p⁵        0 ≤ p ≤ PL
+//! a₀ = where the block before ended       a₁ = (xe − a₀ − a₂PL² − a₃PL³ − a₄PL⁴ − a₅PL⁵)/PL, by the control
+//! ```
+//!
+//! so rounding can open no gap; it turns the start tangent a little. An axis given as a plain word is linear in p.
+//!
+//! **BSPLINE.** One might expect a knot vector. There is a distance `PL` on each block instead, and the first control
+//! point is where the block before ended. With knots t_0 … t_{n+3} of a clamped cubic of points P_0 … P_{n−1},
+//! block j (j = 1 … n−1) carries
+//!
+//! ```text
+//! PL_j = t_{j+2} − t_{j+1}
+//! ```
+//!
+//! the *middle* knot of the three that belong to P_j; the first and the last block carry PL=0. PL is not modal: it
+//! stands on every block, zeros included. The reference curve (0,0) (10,0) (30,24) (60,0) (90,−24) (110,0) (120,0) on
+//! knots 0⁴ 30 60 90 120⁴:
+//!
+//! ```text
+//! N10 G1 X0 Y0 F1000
+//! N20 BSPLINE SD=3 X10 Y0 PL=0
+//! N30 X30 Y24 PL=30
+//! N40 X60 Y0 PL=30
+//! N50 X90 Y-24 PL=30
+//! N60 X110 Y0 PL=30
+//! N70 X120 Y0 PL=0
+//! ```
+//!
+//! **Axes outside FGROUP**, as a rotary A beside the path X Y Z, follow the *arc length* of the path unless `UPATH`
+//! makes them follow the *parameter*. So `UPATH` stands before each run of POLY or spline blocks that moves one, and
+//! `SPLINEPATH(1,…)` names every axis of a spline run.
+//!
+//! # Modal words
+//!
+//! | word | modal |
+//! |---|---|
+//! | G0 G1 POLY BSPLINE ASPLINE CSPLINE | yes, one group |
+//! | X Y Z A | a word left out stays |
+//! | F, SD, UPATH, SPLINEPATH | yes |
+//! | PL, PW, PO[…] | never |
+
+mod read;
+mod write;
+
+use super::{Dialect, Form, Motion};
+use crate::ir::ThroughKind;
+
+/// The dialect.
+pub const DIALECT: Dialect = Dialect {
+    name: "sinumerik",
+    about: "Siemens Sinumerik 840D, 840D sl, ONE",
+    motions: &[
+        Motion { name: "poly", form: Form::Polynomial { closing: false }, about: "POLY: polynomial blocks" },
+        Motion { name: "bspline", form: Form::Nurbs, about: "BSPLINE: control points and knot distances" },
+        Motion { name: "linear", form: Form::Lines, about: "G1" },
+        Motion { name: "aspline", form: Form::Through(ThroughKind::Akima), about: "ASPLINE: Akima spline through points" },
+        Motion { name: "cspline", form: Form::Through(ThroughKind::Cubic), about: "CSPLINE: cubic spline through points" },
+    ],
+    naming: ("1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter", is_name),
+    write: write::write,
+    read: read::read,
+};
+
+/// *NC Programming* 12.19 p.42.
+fn is_name(name: &str) -> bool {
+    let bytes = name.as_bytes();
+    let letter = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_alphabetic);
+    bytes.len() <= 24
+        && bytes.iter().all(|b| b.is_ascii_alphanumeric() || *b == b'_')
+        && ((letter(0) && letter(1)) || (bytes.first() == Some(&b'_') && letter(1)))
+}

@@ -1,0 +1,591 @@
+//! Reads a Sinumerik program, in two layers: blocks as written, then what they mean.
+//!
+//! A word that is not understood is an error at its place.
+
+use crate::decimal::{Decimal, read_decimal};
+use crate::dialect::Reading;
+use crate::dialect::assemble::Assembler;
+use crate::dialect::block::{Frame, Lines, Met, Numbering, block_number};
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::ir::{
+    COEFFICIENTS, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+};
+use crate::machine::Machine;
+use crate::pass::check::moving;
+use crate::source::{SourceId, Span};
+use crate::units::{Kind, MAX_AXES};
+use nom::branch::alt;
+use nom::bytes::complete::{tag, take_while, take_while1};
+use nom::character::complete::{char, space0};
+use nom::combinator::{opt, recognize};
+use nom::error::{Error, ErrorKind};
+use nom::multi::separated_list1;
+use nom::sequence::{delimited, preceded, terminated};
+use nom::{IResult, Parser};
+use std::ops::Range;
+
+/// One word of a block.
+#[derive(Debug, PartialEq)]
+enum Word<'t> {
+    /// `X30`, `X1=10`, `PL=30`
+    Address(&'t str, Decimal),
+    /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`
+    Polynomial(&'t str, Vec<Decimal>),
+    /// `SPLINEPATH(1,X,Y)`
+    Call(&'t str, &'t str),
+    /// `BSPLINE`
+    Keyword(&'t str),
+}
+
+/// `word = address | polynomial | assignment | call | keyword`
+fn word(input: &str) -> IResult<&str, Word<'_>> {
+    alt((address, polynomial, assignment, call, keyword)).parse(input)
+}
+
+/// `address = letter number`, where no `=` follows: `X1=10` is axis X1
+#[inline]
+fn address(input: &str) -> IResult<&str, Word<'_>> {
+    let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
+    let bytes = input.as_bytes();
+    if !bytes.first().is_some_and(u8::is_ascii_alphabetic) {
+        return failed();
+    }
+    let (rest, value) = number(&input[1..])?;
+    if rest.starts_with('=') {
+        return failed();
+    }
+    Ok((rest, Word::Address(&input[..1], value)))
+}
+
+/// `number = [sign] ( digits ["." [digits]] | "." digits ) ["EX" [sign] digits]`
+#[inline]
+fn number(input: &str) -> IResult<&str, Decimal> {
+    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
+    let (value, length) = read_decimal(input.as_bytes(), false).map_err(|_| failed())?;
+    let rest = &input[length..];
+    if !rest.starts_with("EX") {
+        return Ok((rest, value));
+    }
+    let (rest, exponent) = preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit())))).parse(rest)?;
+    let exponent: i32 = exponent.parse().map_err(|_| failed())?;
+    scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
+}
+
+/// value · 10^exponent, where it can be held.
+fn scaled(mut value: Decimal, exponent: i32) -> Option<Decimal> {
+    for _ in 0..exponent.clamp(0, 30) {
+        value = value.times(10)?;
+    }
+    for _ in 0..(-exponent).clamp(0, 30) {
+        let digits = value.digits() + 1;
+        value = Decimal::new(value.units(digits - 1)?, digits);
+        if crate::decimal::MAX_DIGITS < digits {
+            return None;
+        }
+    }
+    Some(value)
+}
+
+/// `name = letter { letter | digit | "_" }`
+fn name(input: &str) -> IResult<&str, &str> {
+    recognize((
+        take_while1(|c: char| c.is_ascii_alphabetic() || c == '_'),
+        take_while(|c: char| c.is_ascii_alphanumeric() || c == '_'),
+    ))
+    .parse(input)
+}
+
+/// `list = "(" number { "," number } ")"`
+fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
+    let item = delimited(space0, number, space0);
+    delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
+}
+
+/// `polynomial = "PO[" name "]" "=" list | name "=" "PO" list`
+fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
+    let old = (delimited(tag("PO["), name, char(']')), preceded((space0, char('='), space0), list));
+    let new = (terminated(name, (space0, char('='), space0, tag("PO"))), list);
+    alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
+}
+
+/// `assignment = name "=" number`
+fn assignment(input: &str) -> IResult<&str, Word<'_>> {
+    let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
+    Ok((rest, Word::Address(name, value)))
+}
+
+/// `call = name "(" arguments ")"`
+fn call(input: &str) -> IResult<&str, Word<'_>> {
+    let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
+    (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
+}
+
+/// `keyword = name`
+fn keyword(input: &str) -> IResult<&str, Word<'_>> {
+    name.map(Word::Keyword).parse(input)
+}
+
+/// G group 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Motion {
+    None,
+    Rapid,
+    Line,
+    Poly,
+    Bspline,
+    Through(ThroughKind),
+}
+
+/// Codes that state what the IR assumes anyway.
+const STATE_CODES: [&str; 17] = [
+    "G17", "G40", "G54", "G55", "G56", "G57", "G500", "G60", "G64", "G601", "G642", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF",
+];
+
+/// What one block says.
+struct Block {
+    named: [(usize, i64); MAX_AXES],
+    count: usize,
+    coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
+    has_polynomial: bool,
+    pl: Option<Decimal>,
+    pw: Option<Decimal>,
+    starts_spline: bool,
+}
+
+impl Block {
+    fn named(&self) -> &[(usize, i64)] {
+        &self.named[..self.count]
+    }
+}
+
+/// A spline in the making.
+struct Run {
+    motion: Motion,
+    start: Units,
+    points: Vec<Units>,
+    lines: Vec<u32>,
+    pl: Vec<Decimal>,
+    pw: Vec<Option<Decimal>>,
+    missing_pl: bool,
+    blocks: Vec<PolynomialBlock>,
+    degree: usize,
+    span: Span,
+}
+
+struct Reader<'m> {
+    assembler: Assembler<'m>,
+    motion: Motion,
+    degree: usize,
+    upath: bool,
+    run: Option<Run>,
+}
+
+/// Reads a program.
+pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Warned<Reading>, Diagnostics> {
+    let mut frame = Frame::new(machine);
+    let mut numbering = Numbering::new(machine);
+    let mut reader = Reader {
+        assembler: Assembler::new(machine, source),
+        motion: Motion::None,
+        degree: 3,
+        upath: false,
+        run: None,
+    };
+    for line in Lines::new(text) {
+        let indent = line.text.len() - line.text.trim_start().len();
+        let mut body = &line.text[indent..];
+        let mut start = line.start + indent;
+        if body.is_empty() {
+            continue;
+        }
+        if !body.starts_with(';') {
+            let number = body.strip_prefix('N').and_then(block_number);
+            if let Some((_, digits)) = number {
+                let rest = body[1 + digits..].trim_start();
+                start += body.len() - rest.len();
+                body = rest;
+            }
+            numbering.meet(number.map(|(number, _)| number), line.range());
+        }
+        let span = Span::new(source, line.range());
+        // A block of one axis letter and a digit is a move; only others can be lines of the frame.
+        let is_move = frame.header_complete() && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
+        if !is_move || !reader.is_cutting() {
+            let steps_before = reader.run.is_some();
+            if steps_before && frame.may_begin(body) {
+                reader.flush();
+            }
+            if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
+                continue;
+            }
+        }
+        if let Some(comment) = body.strip_prefix(';') {
+            reader.flush();
+            reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
+            continue;
+        }
+        let code = body.split(';').next().unwrap_or_default();
+        reader.block(code, start, line.number, span);
+        if 100 < reader.assembler.diagnostics.0.len() {
+            break;
+        }
+    }
+    reader.flush();
+    let (header, footer) = (frame.header_complete(), frame.footer_complete());
+    let warned = reader.assembler.finish()?;
+    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered };
+    Ok(Warned { value: reading, warnings: warned.warnings })
+}
+
+impl Reader<'_> {
+    fn is_cutting(&self) -> bool {
+        self.motion != Motion::None
+    }
+
+    /// One block: its words, then the move that they make.
+    fn block(&mut self, code: &str, start: usize, line: u32, span: Span) {
+        let mut block = Block {
+            named: [(0, 0); MAX_AXES],
+            count: 0,
+            coefficients: [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES],
+            has_polynomial: false,
+            pl: None,
+            pw: None,
+            starts_spline: false,
+        };
+        let mut rest = code.trim_start();
+        while !rest.is_empty() {
+            let at = start + (code.len() - rest.len());
+            match word(rest) {
+                Ok((after, word)) => {
+                    let range = at..at + (rest.len() - after.len());
+                    self.word(word, range, &mut block);
+                    rest = after.trim_start();
+                }
+                Err(_) => {
+                    let length = rest.find([' ', '\t']).unwrap_or(rest.len());
+                    self.assembler.error("word-unreadable", "this word cannot be read", at..at + length);
+                    return;
+                }
+            }
+        }
+        if block.starts_spline {
+            self.flush();
+        }
+        self.moved(&block, line, span);
+    }
+
+    fn word(&mut self, word: Word<'_>, range: Range<usize>, block: &mut Block) {
+        match word {
+            Word::Address(name, value) => {
+                let axis = match name.as_bytes() {
+                    [letter] => self.assembler.letter(*letter),
+                    _ => self.assembler.axis(name),
+                };
+                if let Some(axis) = axis {
+                    if let Some(units) = self.assembler.units(axis, value, range.clone()) {
+                        self.name_axis(block, axis, units, range);
+                    }
+                } else {
+                    self.address(name, value, range, block);
+                }
+            }
+            Word::Polynomial(name, values) => {
+                let Some(axis) = self.assembler.axis(name) else {
+                    return self.assembler.error("axis-unknown", format!("{name} is not an axis of this machine"), range);
+                };
+                if COEFFICIENTS + 1 < values.len() {
+                    return self.assembler.error("degree-too-high", "a polynomial has an end and at most four coefficients", range);
+                }
+                if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
+                    self.name_axis(block, axis, units, range);
+                    block.coefficients[axis][..values.len() - 1].copy_from_slice(&values[1..]);
+                    block.has_polynomial = true;
+                }
+            }
+            Word::Call("SPLINEPATH", arguments) => {
+                let mut parts = arguments.split(',').map(str::trim);
+                let first = parts.next() == Some("1");
+                if !first || !parts.all(|axis| self.assembler.axis(axis).is_some()) {
+                    self.assembler.error("splinepath", "SPLINEPATH takes 1 and axes of this machine", range);
+                }
+            }
+            Word::Call("FGROUP", arguments) => {
+                // Feed and synchronisation are those of the geometry axes; another group means another path.
+                let axes = self.assembler.machine.axes;
+                let linear = |name: &str| self.assembler.axis(name).is_some_and(|i| axes.kind(i) == Kind::Linear);
+                if !arguments.trim().is_empty() && !arguments.split(',').map(str::trim).all(linear) {
+                    self.assembler.error("fgroup", "only linear axes are read in FGROUP", range);
+                }
+            }
+            Word::Call(name, _) => {
+                self.assembler.error("word-unknown", format!("`{name}(…)` is not understood"), range);
+            }
+            Word::Keyword(keyword) => self.keyword(keyword, range, block),
+        }
+    }
+
+    fn name_axis(&mut self, block: &mut Block, axis: usize, units: i64, range: Range<usize>) {
+        if block.named().iter().any(|(other, _)| *other == axis) {
+            let name = self.assembler.machine.axes.name(axis);
+            return self.assembler.error("axis-twice", format!("{name} stands twice in this block"), range);
+        }
+        block.named[block.count] = (axis, units);
+        block.count += 1;
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if self.motion != motion {
+            self.flush();
+        }
+        self.motion = motion;
+    }
+
+    fn address(&mut self, name: &str, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let whole = value.units(0);
+        match (name, whole) {
+            ("G", Some(0)) => self.set_motion(Motion::Rapid),
+            ("G", Some(1)) => self.set_motion(Motion::Line),
+            ("G", Some(code)) if STATE_CODES.contains(&format!("G{code}").as_str()) => {}
+            ("F", _) => {
+                if value.compare(Decimal::ZERO).is_le() {
+                    self.assembler.error("feed-range", "the feed must be greater than zero", range);
+                } else if self.assembler.feed != Some(value) {
+                    // A run has one feed; a spline keeps the one it starts with.
+                    self.flush_lines_only();
+                    self.assembler.feed = Some(value);
+                }
+            }
+            ("PL", _) => block.pl = Some(value),
+            ("PW", _) => block.pw = Some(value),
+            ("SD", Some(degree @ 2..=3)) => self.degree = degree as usize,
+            ("SD", _) => self.assembler.error("degree-range", "SD is 2 or 3", range),
+            _ => self.assembler.error("word-unknown", format!("`{name}{value}` is not understood"), range),
+        }
+    }
+
+    fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
+        match keyword {
+            "POLY" => self.set_motion(Motion::Poly),
+            "BSPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Bspline;
+            }
+            "ASPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Through(ThroughKind::Akima);
+            }
+            "CSPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Through(ThroughKind::Cubic);
+            }
+            "UPATH" | "SPATH" => {
+                self.flush();
+                self.upath = keyword == "UPATH";
+            }
+            "BAUTO" | "BNAT" | "BTAN" => self.end_condition(keyword, true, range),
+            "EAUTO" | "ENAT" | "ETAN" => self.end_condition(keyword, false, range),
+            _ if STATE_CODES.contains(&keyword) => {}
+            _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
+        }
+    }
+
+    /// The IR has no place for end conditions: they are the machine file's.
+    fn end_condition(&mut self, word: &str, begin: bool, range: Range<usize>) {
+        let spline = &self.assembler.machine.spline;
+        let expected = if begin { &spline.begin } else { &spline.end };
+        if word != expected {
+            let message = format!("the machine file has the end condition {expected} here, not {word}");
+            self.assembler.error("end-condition", message, range);
+        }
+    }
+
+    /// A polynomial run ends where the feed changes; a spline does not.
+    fn flush_lines_only(&mut self) {
+        if self.run.as_ref().is_some_and(|run| run.motion == Motion::Poly) {
+            self.flush();
+        }
+    }
+
+    /// The move that a block makes.
+    fn moved(&mut self, block: &Block, line: u32, span: Span) {
+        let whole = || span.start as usize..span.end as usize;
+        if block.has_polynomial && self.motion != Motion::Poly {
+            return self.assembler.error("po-without-poly", "PO[…] stands in a block that is not POLY", whole());
+        }
+        let spline = matches!(self.motion, Motion::Bspline);
+        if (block.pl.is_some() && !spline && self.motion != Motion::Poly) || (block.pw.is_some() && !spline) {
+            return self.assembler.error("spline-word", "PL and PW belong to spline blocks", whole());
+        }
+        if block.count == 0 && !block.has_polynomial {
+            if block.pl.is_some() || block.pw.is_some() {
+                self.assembler.error("spline-word", "a spline block without an axis", whole());
+            }
+            return;
+        }
+        match self.motion {
+            Motion::None => self.assembler.error("motion-missing", "a move before any G0, G1, POLY or spline", whole()),
+            Motion::Rapid => self.assembler.rapid(block.named(), span),
+            Motion::Line => self.assembler.line(block.named(), line, span),
+            Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
+        }
+    }
+
+    fn spline_block(&mut self, block: &Block, line: u32, span: Span) {
+        let target = self.assembler.target(block.named());
+        if self.run.is_none() {
+            let start = self.assembler.start(&target, span);
+            self.run = Some(Run {
+                motion: self.motion,
+                start,
+                points: Vec::new(),
+                lines: Vec::new(),
+                pl: Vec::new(),
+                pw: Vec::new(),
+                missing_pl: false,
+                blocks: Vec::new(),
+                degree: self.degree,
+                span,
+            });
+        }
+        for (axis, units) in block.named() {
+            self.assembler.position[*axis] = Some(*units);
+        }
+        let Some(run) = &mut self.run else { return };
+        run.span.end = span.end;
+        run.lines.push(line);
+        if self.motion == Motion::Poly {
+            let pl = block.pl.unwrap_or(Decimal::new(1, 0));
+            if pl.compare(Decimal::ZERO).is_le() {
+                return self.assembler.error("pl-range", "PL of a POLY block must be greater than zero", span.start as usize..span.end as usize);
+            }
+            run.blocks.push(PolynomialBlock { pl, end: target, coefficients: block.coefficients, line });
+        } else {
+            run.points.push(target);
+            run.missing_pl |= block.pl.is_none();
+            run.pl.push(block.pl.unwrap_or(Decimal::ZERO));
+            run.pw.push(block.pw);
+        }
+    }
+
+    /// Ends a spline: it becomes a cut.
+    fn flush(&mut self) {
+        let Some(run) = self.run.take() else { return };
+        let span = run.span;
+        let end = run.points.last().copied().or(run.blocks.last().map(|block| block.end)).unwrap_or(run.start);
+        let curve = match run.motion {
+            Motion::Poly => Some(Written::Polynomial(WrittenPolynomial { start: run.start, blocks: run.blocks })),
+            Motion::Bspline => self.bspline(run).map(Written::Nurbs),
+            Motion::Through(kind) => {
+                let stride = self.assembler.machine.axes.count();
+                let units = run.points.iter().flat_map(|point| point[..stride].to_vec()).collect();
+                Some(Written::Through(kind, WrittenPoints { start: run.start, stride, units, lines: run.lines }))
+            }
+            Motion::None | Motion::Rapid | Motion::Line => None,
+        };
+        let Some(curve) = curve else { return };
+        if !self.upath && self.depends_on_upath(&curve) {
+            let diagnostic = Diagnostic::error("arc-length", "without UPATH the rotary axes follow the arc length here, which is another curve");
+            self.assembler.diagnostics.push(diagnostic.at(span, "").hint("write UPATH before the spline"));
+        }
+        self.assembler.curve(curve, &end, span);
+    }
+
+    /// The knot vector from the distances: t₂ = 0, t_{j+2} = t_{j+1} + PL_j.
+    fn bspline(&mut self, run: Run) -> Option<WrittenNurbs> {
+        let whole = run.span.start as usize..run.span.end as usize;
+        let Run { mut points, mut lines, mut pl, mut pw, degree, .. } = run;
+        points.insert(0, run.start);
+        lines.insert(0, lines.first().copied().unwrap_or(0));
+        // A first block that repeats the first point has an empty support; its weight is that of the point.
+        let mut first_weight = None;
+        if points.len() > degree + 2 && points[0] == points[1] && pl[0].is_zero() && pl[1].is_zero() && degree == 3 {
+            points.remove(0);
+            lines.remove(0);
+            pl.remove(0);
+            first_weight = pw.remove(0);
+        }
+        let n = points.len();
+        if n <= degree {
+            self.assembler.error("spline-too-short", format!("a B-spline of degree {degree} needs at least {degree} blocks"), whole);
+            return None;
+        }
+        let knot_digits = pl.iter().map(|d| d.digits()).max().unwrap_or(0).max(self.assembler.machine.digits.knot);
+        let mut knots = vec![0i64; 3];
+        if run.missing_pl {
+            if pl.iter().any(|d| !d.is_zero()) {
+                self.assembler.error("pl-missing", "PL stands on some blocks of this spline only", whole);
+                return None;
+            }
+            self.assembler.diagnostics.push(
+                Diagnostic::warning("knots-unknown", "without PL the control chooses the knots; uniform ones are taken here").at(run.span, ""),
+            );
+            let spans = n - degree;
+            knots = vec![0; degree + 1];
+            knots.extend((1..spans).map(|i| i as i64 * crate::decimal::power_of_ten(knot_digits)));
+            knots.extend(std::iter::repeat_n(spans as i64 * crate::decimal::power_of_ten(knot_digits), degree + 1));
+        } else {
+            for (distance, line) in pl.iter().zip(&lines[1..]) {
+                let units = distance.units(knot_digits).filter(|units| 0 <= *units);
+                let next = units.and_then(|units| knots[knots.len() - 1].checked_add(units));
+                let Some(next) = next else {
+                    self.assembler.error("pl-range", format!("PL={distance} in line {line} is no knot distance"), whole);
+                    return None;
+                };
+                knots.push(next);
+            }
+            let last = knots[knots.len() - 1];
+            while knots.len() < n + degree + 1 {
+                knots.push(last);
+            }
+        }
+        let weights = if pw.iter().all(Option::is_none) && first_weight.is_none() {
+            None
+        } else {
+            let one = Decimal::new(1, 0);
+            Some(std::iter::once(first_weight.unwrap_or(one)).chain(pw.iter().map(|w| w.unwrap_or(one))).collect())
+        };
+        let nurbs = WrittenNurbs { degree, knots, knot_digits, points, weights, lines };
+        let decimals = crate::ir::Decimals {
+            program: crate::ir::Program { name: String::new(), axes: self.assembler.machine.axes, steps: Vec::new() },
+            digits: self.assembler.digits,
+        };
+        if let Err(error) = crate::verify::to_nurbs(&decimals, &nurbs) {
+            self.assembler.error("spline-unsound", error.to_string(), whole);
+            return None;
+        }
+        Some(nurbs)
+    }
+
+    /// Whether a curve moves a rotary axis while the linear ones are not linear in the parameter. A B-spline's are
+    /// where each control point lies over the mean of its inner knots, here to two units of the last decimal.
+    fn depends_on_upath(&self, curve: &Written) -> bool {
+        let axes = self.assembler.machine.axes;
+        let moved = moving(curve);
+        let (rotary, linear): (Vec<usize>, Vec<usize>) = moved.iter().partition(|i| axes.kind(**i) == Kind::Rotary);
+        if rotary.is_empty() {
+            return false;
+        }
+        match curve {
+            Written::Lines(_) => false,
+            // What the control makes of points is its own affair.
+            Written::Through(..) => false,
+            Written::Polynomial(polynomial) => polynomial
+                .blocks
+                .iter()
+                .any(|block| linear.iter().any(|i| block.coefficients[*i].iter().any(|a| !a.is_zero()))),
+            Written::Nurbs(nurbs) => {
+                let (p, n) = (nurbs.degree, nurbs.points.len());
+                let total = (nurbs.knots[n] - nurbs.knots[0]) as f64;
+                (0..n).any(|i| {
+                    let mean = nurbs.knots[i + 1..=i + p].iter().map(|t| *t as f64).sum::<f64>() / p as f64;
+                    let share = (mean - nurbs.knots[0] as f64) / total;
+                    linear.iter().any(|axis| {
+                        let (first, last) = (nurbs.points[0][*axis] as f64, nurbs.points[n - 1][*axis] as f64);
+                        2.0 < (nurbs.points[i][*axis] as f64 - first - share * (last - first)).abs()
+                    })
+                })
+            }
+        }
+    }
+}

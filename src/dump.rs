@@ -1,0 +1,135 @@
+//! Programs as text, to be looked at: one step a line, numbers in full precision.
+
+use crate::ir::{Curve, Cut, Decimals, Intent, Method, Polyline, Role, Step, Units, Written};
+use crate::units::{Axes, Position};
+use std::fmt::{Display, Write as _};
+
+/// What was asked.
+pub fn intent(intent: &Intent) -> String {
+    let program = &intent.program;
+    let axes = program.axes;
+    let mut text = head(&program.name, axes);
+    if let Some((tolerance, _)) = intent.tolerance {
+        let _ = writeln!(text, "tolerance {tolerance}");
+    }
+    for located in &program.steps {
+        step(&mut text, &axes, &located.step, |text, curve| match curve {
+            Curve::Lines(line) => points(text, &axes, "lines", line),
+            Curve::Through(kind, line) => points(text, &axes, &format!("through {kind:?}"), line),
+            Curve::Polynomial(pieces) => {
+                let _ = writeln!(text, "polynomial");
+                for piece in pieces {
+                    let _ = writeln!(text, "  piece of degree {}", piece.degree);
+                    for point in piece.control_points() {
+                        let _ = writeln!(text, "    {}", position(&axes, point));
+                    }
+                }
+            }
+            Curve::Nurbs(nurbs) => {
+                let _ = writeln!(text, "nurbs of degree {}, knots {:?}", nurbs.degree(), nurbs.knots());
+                for (point, weight) in nurbs.points().iter().zip(nurbs.weights()) {
+                    let _ = writeln!(text, "    {} weight {weight}", position(&axes, point));
+                }
+            }
+            Curve::Logarithmic(log) => {
+                let method = match log.method {
+                    Method::Auto => "auto",
+                    Method::OddEven => "odd-even",
+                    Method::Direct => "direct",
+                };
+                let c = log.curve.cutter();
+                let dl = log.dl.map_or("auto".to_owned(), |dl| dl.to_string());
+                let _ = writeln!(
+                    text,
+                    "logarithmic D1 {} S {} C {} r {} length {} {:?} {:?} index {} method {method} dl {dl} overrun {}",
+                    c.d1, c.s, c.c, c.r, c.length, c.hand, c.law, log.curve.index, log.overrun
+                );
+            }
+        });
+    }
+    text
+}
+
+/// What a control reads.
+pub fn decimals(decimals: &Decimals) -> String {
+    let program = &decimals.program;
+    let axes = program.axes;
+    let at = |units: &Units| position(&axes, &decimals.position(units));
+    let mut text = head(&program.name, axes);
+    for located in &program.steps {
+        step(&mut text, &axes, &located.step, |text, curve| match curve {
+            Written::Lines(line) | Written::Through(_, line) => {
+                let kind = match curve {
+                    Written::Through(kind, _) => format!("through {kind:?}"),
+                    Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) => "lines".to_owned(),
+                };
+                let _ = writeln!(text, "{kind} from {}", at(&line.start));
+                for point in line.points() {
+                    let _ = writeln!(text, "    {}", at(&point));
+                }
+            }
+            Written::Polynomial(polynomial) => {
+                let _ = writeln!(text, "polynomial from {}", at(&polynomial.start));
+                for block in &polynomial.blocks {
+                    let _ = writeln!(text, "  to {} over {}", at(&block.end), block.pl);
+                    for (i, (axis, _)) in axes.as_slice().iter().enumerate() {
+                        let [a2, a3, a4, a5] = block.coefficients[i];
+                        let _ = writeln!(text, "    {axis} {a2} {a3} {a4} {a5}");
+                    }
+                }
+            }
+            Written::Nurbs(nurbs) => {
+                let knots: Vec<f64> =
+                    nurbs.knots.iter().map(|t| crate::decimal::units_to_f64(*t, nurbs.knot_digits)).collect();
+                let _ = writeln!(text, "nurbs of degree {}, knots {knots:?}", nurbs.degree);
+                for (i, point) in nurbs.points.iter().enumerate() {
+                    let weight = nurbs.weights.as_ref().map_or(String::new(), |w| format!(" weight {}", w[i]));
+                    let _ = writeln!(text, "    {}{weight}", at(point));
+                }
+            }
+        });
+    }
+    text
+}
+
+fn head(name: &str, axes: Axes) -> String {
+    let names: Vec<&str> = axes.as_slice().iter().map(|(axis, _)| axis.as_str()).collect();
+    format!("program {name}\naxes {}\n", names.join(" "))
+}
+
+fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve: impl Fn(&mut String, &C)) {
+    // Writing to a String cannot fail.
+    let _ = match step {
+        Step::Comment(comment) => writeln!(text, "comment {comment}"),
+        Step::Tool(number) => writeln!(text, "tool {number}"),
+        Step::Spindle(rpm) => writeln!(text, "spindle {rpm}"),
+        Step::Rapid(targets) => {
+            let words: Vec<String> = targets.iter().map(|(axis, to)| format!("{} {to}", axes.name(*axis))).collect();
+            writeln!(text, "rapid {}", words.join(" "))
+        }
+        Step::Cut(Cut { feed, role, curve: shape }) => {
+            let role = match role {
+                Role::Path => "cut",
+                Role::Approach => "approach",
+            };
+            let feed = feed.as_ref().map_or("none".to_owned(), ToString::to_string);
+            let _ = write!(text, "{role} feed {feed} ");
+            curve(text, shape);
+            Ok(())
+        }
+    };
+}
+
+fn points(text: &mut String, axes: &Axes, kind: &str, line: &Polyline) {
+    let _ = writeln!(text, "{kind} from {}", position(axes, &line.start));
+    for point in line.points() {
+        let _ = writeln!(text, "    {}", position(axes, &point));
+    }
+}
+
+fn position(axes: &Axes, point: &Position) -> String {
+    let mut buffer = zmij::Buffer::new();
+    let words: Vec<String> =
+        axes.as_slice().iter().enumerate().map(|(i, (axis, _))| format!("{axis} {}", buffer.format(point[i] + 0.0))).collect();
+    words.join(" ")
+}

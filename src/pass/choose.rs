@@ -1,0 +1,120 @@
+//! One motion for a program, where `auto` leaves it open: the one with the fewest blocks that this machine takes and
+//! whose path can be proved. At equal numbers the dialect's own order decides; through-point motions are never chosen,
+//! since only the control knows their shape, and a path that is straight anyway is written as lines.
+
+use super::{convert, interpolate, settle};
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::dialect::{Form, Motion};
+use crate::ir::{Curve, Cut, Intent, Method, Program, Role, Step};
+use crate::machine::Machine;
+use crate::units::Axis;
+
+/// The motion for an intent.
+///
+/// # Errors
+/// No motion of the machine can hold the tolerance.
+pub fn choose(intent: &Intent, machine: &Machine, tolerance: f64) -> Result<Warned<&'static Motion>, Diagnostics> {
+    let mut warnings = Diagnostics::new();
+    let blocked = machine.axes_without_spline(&moving_axes(intent));
+    let straight = paths(intent).all(|curve| match curve {
+        Curve::Logarithmic(log) => log.curve.is_straight() && log.method != Method::OddEven,
+        Curve::Lines(_) => true,
+        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
+    });
+    let mut best: Option<(usize, &'static Motion)> = None;
+    let mut errors = Diagnostics::new();
+    for motion in machine.dialect.motions {
+        let allowed = match motion.form {
+            Form::Lines => true,
+            Form::Polynomial { .. } | Form::Nurbs => blocked.is_empty() && !straight,
+            Form::Through(_) => false,
+        };
+        if !allowed {
+            continue;
+        }
+        match blocks(intent, motion.form, machine, tolerance) {
+            Ok(n) if best.is_none_or(|(fewest, _)| n < fewest) => best = Some((n, motion)),
+            Ok(_) => {}
+            Err(error) => errors.extend(error),
+        }
+    }
+    let Some((_, motion)) = best else { return Err(errors) };
+    if !blocked.is_empty() && !straight {
+        let names: Vec<&str> = blocked.iter().map(Axis::as_str).collect();
+        let names = names.join(", ");
+        warnings.push(
+            Diagnostic::warning(
+                "spline-axes",
+                format!("written as lines: machine `{}` does not let splines move {names}", machine.name),
+            )
+            .hint(format!(
+                "where the control's splines do move {names}, say so in a machine file: extends = \"{}\", [spline] axes = [\"X\", \"Y\", \"Z\", \"{}\"]",
+                machine.name,
+                names.replace(", ", "\", \"")
+            )),
+        );
+    }
+    Ok(Warned { value: motion, warnings })
+}
+
+fn paths(intent: &Intent) -> impl Iterator<Item = &Curve> {
+    intent.program.steps.iter().filter_map(|located| match &located.step {
+        Step::Cut(Cut { role: Role::Path, curve, .. }) => Some(curve),
+        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_) => None,
+    })
+}
+
+/// The axes that paths move.
+pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
+    let axes = &intent.program.axes;
+    let moves = |i: usize| {
+        paths(intent).any(|curve| match curve {
+            Curve::Logarithmic(log) => {
+                let c = &log.curve;
+                [true, c.y_slope() != 0.0, c.z_slope() != 0.0, c.k() != 0.0].get(i).copied().unwrap_or(false)
+            }
+            Curve::Lines(line) | Curve::Through(_, line) => line.points().any(|p| p[i] != line.start[i]),
+            Curve::Polynomial(pieces) => {
+                pieces.iter().any(|piece| piece.control_points().iter().any(|p| p[i] != piece.points[0][i]))
+            }
+            Curve::Nurbs(nurbs) => nurbs.points().iter().any(|p| p[i] != nurbs.points()[0][i]),
+        })
+    };
+    (0..axes.count()).filter(|i| moves(*i)).map(|i| axes.name(i)).collect()
+}
+
+/// How many blocks the paths take in a form.
+fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Result<usize, Diagnostics> {
+    let settled = settle::settle(intent, form, tolerance)?;
+    // Steps are counted without being kept: there may be millions.
+    let mut counted = 0;
+    let mut rest = settled.clone();
+    rest.program.steps.retain(|located| match &located.step {
+        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. })
+            if log.method == Method::OddEven && form == Form::Lines =>
+        {
+            counted += settle::steps(log).map_or(0, Iterator::count);
+            false
+        }
+        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => true,
+    });
+    let program = interpolate::interpolate(&rest, form, machine, tolerance, tolerance)?;
+    Ok(counted + count(&convert::convert(program, form, machine)?))
+}
+
+/// How many blocks the paths of a converted program take.
+pub fn count(program: &Program<f64, Curve>) -> usize {
+    program
+        .steps
+        .iter()
+        .map(|located| match &located.step {
+            Step::Cut(Cut { role: Role::Path, curve, .. }) => match curve {
+                Curve::Lines(line) | Curve::Through(_, line) => line.count(),
+                Curve::Polynomial(pieces) => pieces.len(),
+                Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
+                Curve::Logarithmic(_) => 0,
+            },
+            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 0,
+        })
+        .sum()
+}

@@ -1,0 +1,91 @@
+//! Logarithmic curves become steps, points or pieces, each straight from the intent.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dialect::Form;
+use crate::geom::bezier::Bezier;
+use crate::geom::fit::{self, FitError};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Step};
+use crate::machine::Machine;
+use crate::pass::settle::{steps, through_points};
+use crate::source::Span;
+
+/// The program with every logarithmic curve followed within `tolerance` mm, in shapes that `form` can be made of.
+/// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow.
+///
+/// # Errors
+/// The tolerance is out of reach.
+pub fn interpolate(
+    intent: &Intent,
+    form: Form,
+    machine: &Machine,
+    tolerance: f64,
+    asked: f64,
+) -> Result<Program<f64, Curve>, Diagnostics> {
+    let mut steps = Vec::with_capacity(intent.program.steps.len());
+    for located in &intent.program.steps {
+        let step = match &located.step {
+            Step::Cut(Cut { feed, role, curve: Curve::Logarithmic(log) }) => {
+                let curve = follow(log, form, machine, tolerance, asked).map_err(|error| out_of_reach(error, located.span))?;
+                Step::Cut(Cut { feed: *feed, role: *role, curve })
+            }
+            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => step.clone(),
+        };
+        steps.push(Located { step, span: located.span });
+    }
+    Ok(Program { name: intent.program.name.clone(), axes: intent.program.axes, steps })
+}
+
+fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
+    Diagnostic::refusal("tolerance-out-of-reach", error.to_string()).at(span, "").hint("allow a larger tolerance")
+}
+
+/// One curve as lines, pieces or points.
+fn follow(
+    log: &Logarithmic,
+    form: Form,
+    machine: &Machine,
+    tolerance: f64,
+    asked: f64,
+) -> Result<Curve, FitError> {
+    match (log.method, form) {
+        (_, Form::Through(kind)) => Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter()))),
+        (Method::OddEven, Form::Lines | Form::Polynomial { .. } | Form::Nurbs) => {
+            Ok(Curve::Lines(polyline(log, steps(log).map_err(|_| FitError { tolerance })?)))
+        }
+        (Method::Auto | Method::Direct, Form::Lines) => {
+            let xs = fit::chords(&log.curve, tolerance)?;
+            Ok(Curve::Lines(polyline(log, xs.into_iter().skip(1).map(|x| (x, log.curve.angle(x))))))
+        },
+        (Method::Auto | Method::Direct, Form::Polynomial { closing }) => {
+            let degree = if closing { 3 } else { machine.spline.poly_degree };
+            pieces(log, degree, machine.spline.shared_parameter, tolerance)
+        }
+        (Method::Auto | Method::Direct, Form::Nurbs) => pieces(log, 3, machine.spline.shared_parameter, tolerance),
+    }
+}
+
+fn polyline(log: &Logarithmic, points: impl Iterator<Item = (f64, f64)>) -> Polyline {
+    let mut line = Polyline::new(log.curve.position(0.0), 4);
+    for (x, a) in points {
+        line.push(&log.curve.position_with(x, a));
+    }
+    line
+}
+
+/// The fewest pieces: X linear in the parameter where that needs no more of them, since such blocks mean the same
+/// whether the control lets A follow the parameter or the arc length.
+fn pieces(log: &Logarithmic, degree: usize, shared: bool, tolerance: f64) -> Result<Curve, FitError> {
+    if log.curve.is_straight() {
+        let line = Bezier::line(log.curve.position(0.0), log.curve.position(log.curve.end()));
+        return Ok(Curve::Polynomial(vec![line]));
+    }
+    let linear = fit::linear_in_x(&log.curve, degree, tolerance);
+    if !shared {
+        return linear.map(Curve::Polynomial);
+    }
+    let along = fit::along_itself(&log.curve, tolerance)?;
+    match linear {
+        Ok(linear) if linear.len() <= along.len() => Ok(Curve::Polynomial(linear)),
+        _ => Ok(Curve::Polynomial(along)),
+    }
+}

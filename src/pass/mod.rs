@@ -1,0 +1,18 @@
+//! From what was asked to what one machine takes. Each pass is a function; `compile` in the crate's root calls them in
+//! this order:
+//!
+//! | pass | what |
+//! |---|---|
+//! | [`choose`] | one motion for the program, where `auto` leaves it open |
+//! | [`settle`] | method and Δl, where the input leaves them open: after this the intent is exact |
+//! | [`interpolate`] | logarithmic curves become steps, points or pieces |
+//! | [`convert`] | every curve takes the form of the motion, exactly |
+//! | [`quantise`] | every number is rounded, once |
+//! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
+
+pub mod check;
+pub mod choose;
+pub mod convert;
+pub mod interpolate;
+pub mod quantise;
+pub mod settle;

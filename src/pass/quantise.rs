@@ -1,0 +1,250 @@
+//! Every number is rounded, once, to what the control reads.
+//!
+//! Positions take the machine's decimals. Coefficients of polynomial blocks take as many as the tolerance asks: with
+//! coefficients a₂ … a₅ on 0 ≤ p ≤ PL rounding moves a point by at most Σ ½·10⁻ᵈ PLᵏ, and d is the least that keeps
+//! this within a tenth of the tolerance. What rounding cost in all is measured afterwards, on the curve that the
+//! rounded numbers make.
+//!
+//! # SPL blocks close exactly
+//!
+//! An SPL block states its end A and K1 K2 K3; its start is A + K1 + K2 + K3, which must be the end of the block
+//! before. Both ends are rounded to the machine's decimals, with errors δs and δe. The inner control points move with
+//! their ends, so that both tangents stay as they are:
+//!
+//! ```text
+//! K1 = 3(P2 − P3)          K2 = 3(P1 − 2P2 + P3) + 3(δs − δe)          K3 = start − end − K1 − K2
+//! ```
+//!
+//! and all three are counted in one step q = 10^(e−8), e the least for which each fits nine digits. q divides the
+//! positions' last decimal, so that K3 is a whole number of q and nothing is lost. In the basis of the IR, a₂ = 3 K3 + K2
+//! and a₃ = −K3.
+
+use crate::decimal::{Decimal, round_units};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dialect::Form;
+use crate::geom::bezier::Bezier;
+use crate::geom::nurbs::Nurbs;
+use crate::ir::{
+    COEFFICIENTS, Curve, Cut, Decimals, Located, PolynomialBlock, Polyline, Program, Role, Step, Units, Written,
+    WrittenNurbs, WrittenPoints, WrittenPolynomial,
+};
+use crate::machine::Machine;
+use crate::units::{DEGREES, Kind, MAX_AXES};
+
+/// Nine decimals of a coefficient are as many as a float of a few hundred holds.
+const MAX_COEFFICIENT_DIGITS: u8 = 12;
+
+/// The digits of an SPL coefficient behind the point at exponent 0.
+const CLOSING_DIGITS: u8 = 8;
+
+/// A number is too large to be written, or not finite.
+struct Unwritable;
+
+struct Quantiser<'m> {
+    machine: &'m Machine,
+    digits: [u8; MAX_AXES],
+    coefficient_digits: [u8; MAX_AXES],
+    position: [Option<i64>; MAX_AXES],
+    closing: bool,
+}
+
+/// Rounds a converted program. `radius` is the greatest at which a rotary axis counts, mm.
+///
+/// # Errors
+/// A number is too large for the machine's decimals, or a feed rounds to zero.
+pub fn quantise(
+    program: Program<f64, Curve>,
+    form: Form,
+    machine: &Machine,
+    tolerance: f64,
+    radius: f64,
+) -> Result<Decimals, Diagnostics> {
+    let digits = machine.axis_digits();
+    let coefficient_digits = std::array::from_fn(|i| {
+        let rotary = machine.axes.as_slice().get(i).is_some_and(|(_, kind)| *kind == Kind::Rotary);
+        let share = if rotary && 0.0 < radius { 0.1 * tolerance * DEGREES / radius } else { 0.1 * tolerance };
+        let mut d = digits[i];
+        // Four coefficients, PL = 1.
+        while d < MAX_COEFFICIENT_DIGITS && share < 0.5 * COEFFICIENTS as f64 / crate::decimal::power_of_ten(d) as f64 {
+            d += 1;
+        }
+        d
+    });
+    let closing = form == (Form::Polynomial { closing: true });
+    let mut quantiser = Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], closing };
+    let mut steps = Vec::with_capacity(program.steps.len());
+    for Located { step, span } in program.steps {
+        let step = quantiser.step(step).map_err(|Unwritable| {
+            Diagnostic::error("number-range", "a number is too large for the machine's decimals").at(span, "")
+        })?;
+        if let Step::Cut(Cut { feed: Some(feed), .. }) = &step
+            && feed.is_zero()
+        {
+            return Err(Diagnostic::error("feed-rounds-to-zero", "the feed rounds to zero").at(span, "").into());
+        }
+        steps.push(Located { step, span });
+    }
+    let program = Program { name: program.name, axes: program.axes, steps };
+    Ok(Decimals { program, digits })
+}
+
+impl Quantiser<'_> {
+    fn units(&self, axis: usize, x: f64) -> Result<i64, Unwritable> {
+        round_units(x, self.digits[axis]).ok_or(Unwritable)
+    }
+
+    fn point(&self, point: &[f64; MAX_AXES]) -> Result<Units, Unwritable> {
+        let mut units = [0; MAX_AXES];
+        for (i, units) in units.iter_mut().enumerate().take(self.machine.axes.count()) {
+            *units = self.units(i, point[i])?;
+        }
+        Ok(units)
+    }
+
+    /// Where the control stands, or would: the position it was sent to, not the one that was meant.
+    fn start(&self, meant: &[f64; MAX_AXES]) -> Result<Units, Unwritable> {
+        let mut start = self.point(meant)?;
+        for (start, known) in start.iter_mut().zip(self.position) {
+            *start = known.unwrap_or(*start);
+        }
+        Ok(start)
+    }
+
+    fn arrive(&mut self, point: &Units) {
+        for i in 0..self.machine.axes.count() {
+            self.position[i] = Some(point[i]);
+        }
+    }
+
+    fn step(&mut self, step: Step<f64, Curve>) -> Result<Step<Decimal, Written>, Unwritable> {
+        let rate = |x: f64| Decimal::round(x, self.machine.digits.feed).ok_or(Unwritable);
+        Ok(match step {
+            Step::Comment(text) => Step::Comment(text),
+            Step::Tool(number) => Step::Tool(number),
+            Step::Spindle(rpm) => Step::Spindle(rate(rpm)?),
+            Step::Rapid(targets) => {
+                let mut rounded = Vec::with_capacity(targets.len());
+                for (axis, to) in targets {
+                    let units = self.units(axis, to)?;
+                    self.position[axis] = Some(units);
+                    rounded.push((axis, Decimal::new(units, self.digits[axis])));
+                }
+                Step::Rapid(rounded)
+            }
+            Step::Cut(Cut { feed, role, curve }) => {
+                let feed = feed.map(rate).transpose()?;
+                Step::Cut(Cut { feed, role, curve: self.curve(curve, role)? })
+            }
+        })
+    }
+
+    fn curve(&mut self, curve: Curve, role: Role) -> Result<Written, Unwritable> {
+        match curve {
+            Curve::Lines(line) => Ok(Written::Lines(self.points(&line)?)),
+            Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
+            Curve::Polynomial(pieces) => self.polynomial(&pieces, role == Role::Path && self.closing),
+            Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
+            Curve::Logarithmic(_) => Err(Unwritable), // `interpolate` left none
+        }
+    }
+
+    fn points(&mut self, line: &Polyline) -> Result<WrittenPoints, Unwritable> {
+        let start = self.start(&line.start)?;
+        let mut units = Vec::with_capacity(line.values.len());
+        for point in line.values.chunks_exact(line.stride) {
+            for (axis, x) in point.iter().enumerate() {
+                units.push(self.units(axis, *x)?);
+            }
+        }
+        let mut end = start;
+        if let Some(last) = units.chunks_exact(line.stride).next_back() {
+            end[..line.stride].copy_from_slice(last);
+        }
+        self.arrive(&end);
+        Ok(WrittenPoints { start, stride: line.stride, units, lines: Vec::new() })
+    }
+
+    fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {
+        let start = self.start(&pieces.first().ok_or(Unwritable)?.start())?;
+        let mut from = start;
+        let mut blocks = Vec::with_capacity(pieces.len());
+        for piece in pieces {
+            let end = self.point(&piece.end())?;
+            let mut coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
+            for axis in 0..self.machine.axes.count() {
+                coefficients[axis] = if closing {
+                    self.closing_coefficients(piece, axis, from[axis], end[axis])?
+                } else {
+                    let a = piece.power_basis(axis, 1.0);
+                    let mut rounded = [Decimal::ZERO; COEFFICIENTS];
+                    for (rounded, a) in rounded.iter_mut().zip(&a[2..]).take(piece.degree.saturating_sub(1)) {
+                        *rounded = Decimal::round(*a, self.coefficient_digits[axis]).ok_or(Unwritable)?;
+                    }
+                    rounded
+                };
+            }
+            blocks.push(PolynomialBlock { pl: Decimal::new(1, 0), end, coefficients, line: 0 });
+            from = end;
+        }
+        self.arrive(&from);
+        Ok(Written::Polynomial(WrittenPolynomial { start, blocks }))
+    }
+
+    /// a₂ and a₃ of one axis of an SPL block, as the module's documentation derives them.
+    fn closing_coefficients(
+        &self,
+        piece: &Bezier,
+        axis: usize,
+        start: i64,
+        end: i64,
+    ) -> Result<[Decimal; COEFFICIENTS], Unwritable> {
+        if piece.degree == 1 {
+            // Straight between the rounded ends: K2 = K3 = 0.
+            return Ok([Decimal::ZERO; COEFFICIENTS]);
+        }
+        let cubic = piece.raised_to(3);
+        let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|i| cubic.points[i][axis]);
+        let digits = self.digits[axis];
+        let (delta_s, delta_e) =
+            (crate::decimal::units_to_f64(start, digits) - p0, crate::decimal::units_to_f64(end, digits) - p3);
+        let k1 = 3.0 * (p2 - p3);
+        let k2 = 3.0 * (p1 - 2.0 * p2 + p3) + 3.0 * (delta_s - delta_e);
+        let gap = Decimal::new(start, digits).minus(Decimal::new(end, digits)).ok_or(Unwritable)?;
+        // e from 0 while q = 10^(e−8) still divides the positions' last decimal.
+        for e in 0..=CLOSING_DIGITS.checked_sub(digits).ok_or(Unwritable)? {
+            let q_digits = CLOSING_DIGITS - e;
+            let (Some(k1), Some(k2)) = (Decimal::round(k1, q_digits), Decimal::round(k2, q_digits)) else { continue };
+            let Some(k3) = gap.minus(k1).and_then(|rest| rest.minus(k2)) else { continue };
+            let fits = |k: Decimal| k.units(q_digits).is_some_and(|units| units.unsigned_abs() < 1_000_000_000);
+            if fits(k1) && fits(k2) && fits(k3) {
+                let a2 = k3.times(3).and_then(|k| k.plus(k2)).ok_or(Unwritable)?;
+                let a3 = k3.times(-1).ok_or(Unwritable)?;
+                return Ok([a2, a3, Decimal::ZERO, Decimal::ZERO]);
+            }
+        }
+        Err(Unwritable)
+    }
+
+    fn nurbs(&mut self, nurbs: &Nurbs) -> Result<Written, Unwritable> {
+        let start = self.start(&nurbs.points()[0])?;
+        let mut points = vec![start];
+        for point in &nurbs.points()[1..] {
+            points.push(self.point(point)?);
+        }
+        let knot_digits = self.machine.digits.knot;
+        let knots = nurbs
+            .knots()
+            .iter()
+            .map(|t| round_units(*t, knot_digits).ok_or(Unwritable))
+            .collect::<Result<Vec<i64>, Unwritable>>()?;
+        let weights = if nurbs.is_polynomial() {
+            None
+        } else {
+            let round = |w: &f64| Decimal::round(*w, self.machine.digits.weight).ok_or(Unwritable);
+            Some(nurbs.weights().iter().map(round).collect::<Result<Vec<Decimal>, Unwritable>>()?)
+        };
+        let end = points[points.len() - 1];
+        self.arrive(&end);
+        Ok(Written::Nurbs(WrittenNurbs { degree: nurbs.degree(), knots, knot_digits, points, weights, lines: Vec::new() }))
+    }
+}

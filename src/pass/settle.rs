@@ -1,0 +1,84 @@
+//! Settles what the input leaves open, so that the intent is one exact path.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dialect::Form;
+use crate::geom::fit::{self, FitError};
+use crate::geom::oddeven::{OddEven, StepError, largest_step};
+use crate::ir::{Curve, Intent, Logarithmic, Method, Step};
+
+/// The greatest Δl taken where the input names none.
+pub const MAX_STEP: f64 = 0.2;
+
+/// The intent with method and Δl of every logarithmic curve decided for an output of `form`.
+///
+/// `auto` means odd-even steps where lines follow a curve, and the curve itself for splines and for paths that are
+/// straight anyway: one line is the whole of it.
+///
+/// # Errors
+/// The Δl that would hold the tolerance makes too many points.
+pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Diagnostics> {
+    let mut settled = intent.clone();
+    // Flutes differ in their index only, so one search serves them all.
+    let mut found: Option<(Logarithmic, f64)> = None;
+    for located in &mut settled.program.steps {
+        let Step::Cut(cut) = &mut located.step else { continue };
+        let Curve::Logarithmic(log) = &mut cut.curve else { continue };
+        log.method = match log.method {
+            Method::Auto if form == Form::Lines && !log.curve.is_straight() => Method::OddEven,
+            Method::Auto => Method::Direct,
+            method @ (Method::OddEven | Method::Direct) => method,
+        };
+        if log.method != Method::OddEven || log.dl.is_some() {
+            continue;
+        }
+        let mut key = log.clone();
+        key.curve.index = 0.0;
+        let dl = match &found {
+            Some((known, dl)) if *known == key => *dl,
+            _ => step(log, tolerance).map_err(|error| {
+                Diagnostic::refusal("points-too-many", format!("holding {tolerance} mm with lines: {error}"))
+                    .at(located.span, "")
+                    .hint("allow a larger tolerance, state dl, or let a spline motion do it")
+            })?,
+        };
+        found = Some((key, dl));
+        log.dl = Some(dl);
+    }
+    Ok(settled)
+}
+
+/// The largest Δl ≤ [`MAX_STEP`] that holds the tolerance, mm.
+///
+/// # Errors
+/// It makes too many points.
+pub fn step(log: &Logarithmic, tolerance: f64) -> Result<f64, StepError> {
+    largest_step(&log.curve, tolerance, MAX_STEP, log.overrun)
+}
+
+/// The odd-even steps of a settled curve.
+///
+/// # Errors
+/// Δl is not one that the front end or [`settle`] lets through.
+pub fn steps(log: &Logarithmic) -> Result<OddEven, StepError> {
+    OddEven::new(log.curve, log.dl.unwrap_or(MAX_STEP), log.overrun)
+}
+
+/// The points (X, A in radians) after the first that a control is to lead its own spline through: of odd-even steps the
+/// even ones, which are a hundred times nearer to the curve than the odd ones, and the last; otherwise points of the
+/// curve so near that lines between them would hold the tolerance.
+///
+/// # Errors
+/// The tolerance is out of reach.
+pub fn through_points(log: &Logarithmic, tolerance: f64) -> Result<Vec<(f64, f64)>, FitError> {
+    match log.method {
+        Method::OddEven => {
+            let all: Vec<(f64, f64)> = steps(log).map_err(|_| FitError { tolerance })?.collect();
+            let last = all.len() - 1;
+            Ok(all.into_iter().enumerate().filter(|(i, _)| i % 2 == 1 || *i == last).map(|(_, point)| point).collect())
+        }
+        Method::Auto | Method::Direct => {
+            let xs = fit::chords(&log.curve, tolerance)?;
+            Ok(xs.into_iter().skip(1).map(|x| (x, log.curve.angle(x))).collect())
+        }
+    }
+}

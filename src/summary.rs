@@ -1,0 +1,190 @@
+//! What a compilation tells beside the program.
+
+use crate::ir::{Curve, Cut, Intent, Role, Step};
+use crate::units::DEGREES;
+use crate::verify::Report;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// The figures of a compilation or a verification.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// The program's name.
+    pub name: String,
+    /// The machine's name.
+    pub machine: String,
+    /// The motion of cutting pieces, where it was chosen.
+    pub motion: Option<String>,
+    /// Lines of text.
+    pub blocks: usize,
+    /// Blocks that cut; none where nothing was verified.
+    pub path_blocks: Option<usize>,
+    /// The paths' length, mm; none where nothing was verified.
+    pub cutting_length: Option<f64>,
+    /// mm.
+    pub tolerance: f64,
+    /// `proved`, `points-only` or `not verified`.
+    pub status: &'static str,
+    /// The greatest deviation at the cutter's surface, mm.
+    pub deviation_mm: Option<f64>,
+    /// The greatest deviation in A, radians.
+    pub deviation_rad: Option<f64>,
+    /// Where lines follow odd-even steps: the steps' distance from the ideal curve, mm.
+    pub steps_from_ideal_mm: Option<f64>,
+    /// The same in A, radians.
+    pub steps_from_ideal_rad: Option<f64>,
+    /// The cutter.
+    pub cutter: Option<CutterFigures>,
+    /// What to know.
+    pub notes: Vec<String>,
+}
+
+/// The figures of a conical cutter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CutterFigures {
+    /// How many flutes.
+    pub flutes: usize,
+    /// Helix angle along the axis at both ends, degrees.
+    pub helix_axial_deg: [f64; 2],
+    /// Helix angle along the generatrix at both ends, degrees.
+    pub helix_generatrix_deg: [f64; 2],
+    /// Lead at both ends, mm; none for a straight flute.
+    pub lead_mm: Option<[f64; 2]>,
+    /// Diameter at both ends, mm.
+    pub diameter_mm: [f64; 2],
+    /// How far A turns on a flute, degrees.
+    pub turn_deg: f64,
+    /// Δl, where odd-even steps are made.
+    pub dl: Option<f64>,
+}
+
+impl Summary {
+    /// The figures of an intent, a text and its proof.
+    pub fn new(
+        intent: &Intent,
+        machine: &str,
+        motion: Option<&str>,
+        text: &str,
+        report: Option<&Report>,
+        tolerance: f64,
+    ) -> Summary {
+        let mut notes = Vec::new();
+        let steps = &intent.program.steps;
+        if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
+            notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
+        }
+        notes.push("the path is that of the contact point; the wheel's radius and profile are not modelled".to_owned());
+        notes.push("the proof covers the programmed path, not what the control's own smoothing or compressor adds".to_owned());
+        Summary {
+            name: intent.program.name.clone(),
+            machine: machine.to_owned(),
+            motion: motion.map(str::to_owned),
+            blocks: text.lines().count(),
+            path_blocks: report.map(|r| r.path_blocks),
+            cutting_length: report.map(|r| r.cutting_length),
+            tolerance,
+            status: report.map_or("not verified", |r| r.status.word()),
+            deviation_mm: report.map(|r| r.deviation.mm),
+            deviation_rad: report.map(|r| r.deviation.rad),
+            steps_from_ideal_mm: report.and_then(|r| r.from_ideal).map(|b| b.mm),
+            steps_from_ideal_rad: report.and_then(|r| r.from_ideal).map(|b| b.rad),
+            cutter: CutterFigures::of(intent),
+            notes,
+        }
+    }
+
+    /// As text, for standard error.
+    pub fn render(&self) -> String {
+        let mut text = String::new();
+        let motion = self.motion.as_deref().map_or(String::new(), |motion| format!(", {motion}"));
+        let flutes = self.cutter.as_ref().map_or(String::new(), |c| format!(", {} flute{}", c.flutes, plural(c.flutes)));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}: {}{motion}{flutes}", self.name, self.machine);
+        let cutting = self.path_blocks.map_or(String::new(), |n| format!(", {n} of them cutting"));
+        let _ = writeln!(text, "  blocks     {}{cutting}", self.blocks);
+        if let Some(length) = self.cutting_length {
+            let _ = writeln!(text, "  length     {length:.3} mm cutting");
+        }
+        match (self.deviation_mm, self.deviation_rad) {
+            (Some(mm), Some(rad)) => {
+                let _ = writeln!(
+                    text,
+                    "  deviation  {mm:.2e} mm at the surface, {rad:.2e} rad in A, {} (tolerance {} mm)",
+                    self.status, self.tolerance
+                );
+            }
+            _ => {
+                let _ = writeln!(text, "  deviation  {}", self.status);
+            }
+        }
+        if let (Some(mm), Some(rad)) = (self.steps_from_ideal_mm, self.steps_from_ideal_rad) {
+            let dl = self.cutter.as_ref().and_then(|c| c.dl).map_or(String::new(), |dl| format!(" at dl = {dl}"));
+            let _ = writeln!(text, "  steps      {mm:.2e} mm, {rad:.2e} rad from the ideal curve{dl}");
+        }
+        if let Some(cutter) = &self.cutter {
+            let range = |[a, b]: [f64; 2], digits: usize| {
+                let (a, b) = (format!("{a:.digits$}"), format!("{b:.digits$}"));
+                if a == b { a } else { format!("{a} to {b}") }
+            };
+            let _ = writeln!(
+                text,
+                "  helix      {} degrees axial, {} along the generatrix",
+                range(cutter.helix_axial_deg, 4),
+                range(cutter.helix_generatrix_deg, 4)
+            );
+            match cutter.lead_mm {
+                Some(lead) => {
+                    let _ = writeln!(text, "  lead       {} mm", range(lead, 3));
+                }
+                None => {
+                    let _ = writeln!(text, "  lead       none: the flute is straight");
+                }
+            }
+            let _ = writeln!(text, "  diameter   {} mm", range(cutter.diameter_mm, 4));
+        }
+        for note in &self.notes {
+            let _ = writeln!(text, "  note       {note}");
+        }
+        text
+    }
+
+    /// One JSON object, after those of the diagnostics: `{"summary": {…}}`.
+    pub fn to_json(&self) -> String {
+        #[derive(Serialize)]
+        struct Line<'a> {
+            summary: &'a Summary,
+        }
+        serde_json::to_string(&Line { summary: self }).unwrap_or_default() + "\n"
+    }
+}
+
+fn plural(n: usize) -> &'static str {
+    if n == 1 { "" } else { "s" }
+}
+
+impl CutterFigures {
+    /// The figures of the first flute; none where there is no cutter.
+    pub fn of(intent: &Intent) -> Option<CutterFigures> {
+        let flutes: Vec<_> = intent
+            .program
+            .steps
+            .iter()
+            .filter_map(|located| match &located.step {
+                Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) => Some(log),
+                Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+            })
+            .collect();
+        let log = flutes.first()?;
+        let (curve, end) = (&log.curve, log.curve.end());
+        let lead = [curve.lead(0.0), curve.lead(end)];
+        Some(CutterFigures {
+            flutes: flutes.len(),
+            helix_axial_deg: [curve.helix_axial(0.0), curve.helix_axial(end)],
+            helix_generatrix_deg: [curve.helix_generatrix(0.0), curve.helix_generatrix(end)],
+            lead_mm: lead[0].is_finite().then_some(lead),
+            diameter_mm: [2.0 * curve.radius(0.0), 2.0 * curve.radius(end)],
+            turn_deg: curve.angle(end) * DEGREES,
+            dl: log.dl,
+        })
+    }
+}
