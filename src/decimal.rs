@@ -225,6 +225,9 @@ pub enum NumberError {
 /// Reads `[sign] digits [. digits]` at the start of `text` and gives it with the length read.
 ///
 /// A comma is a decimal point where `comma` says so. No exponent: that is spelled differently on every control.
+///
+/// # Errors
+/// There is no digit, or there are more than a decimal holds.
 pub fn read_decimal(text: &[u8], comma: bool) -> Result<(Decimal, usize), NumberError> {
     let mut at = 0;
     let negative = match text.first() {

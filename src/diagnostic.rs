@@ -49,7 +49,14 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     fn new(severity: Severity, id: &'static str, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity, id, message: message.into(), span: None, label: String::new(), hints: Vec::new() }
+        Diagnostic {
+            severity,
+            id,
+            message: message.into(),
+            span: None,
+            label: String::new(),
+            hints: Vec::new(),
+        }
     }
 
     /// Something in the input is wrong.
@@ -175,7 +182,10 @@ impl Diagnostics {
                     annotation = annotation.label(diagnostic.label.as_str());
                 }
                 group = group.element(
-                    Snippet::source(window).line_start(first_line).path(source.name.as_str()).annotation(annotation),
+                    Snippet::source(window)
+                        .line_start(first_line)
+                        .path(source.name.as_str())
+                        .annotation(annotation),
                 );
             }
             for hint in &diagnostic.hints {
@@ -254,7 +264,9 @@ mod tests {
     fn renders_message_place_and_hint() {
         let (sources, diagnostics) = sample();
         let text = diagnostics.render(&sources, false);
-        for part in ["error[key-unknown]: `D2` is not a key", "--> part.toml:2:1", "^^ unknown key", "did you mean"] {
+        for part in
+            ["error[key-unknown]: `D2` is not a key", "--> part.toml:2:1", "^^ unknown key", "did you mean"]
+        {
             assert!(text.contains(part), "{text}");
         }
     }

@@ -83,7 +83,8 @@ pub fn decimals(decimals: &Decimals) -> String {
                     nurbs.knots.iter().map(|t| crate::decimal::units_to_f64(*t, nurbs.knot_digits)).collect();
                 let _ = writeln!(text, "nurbs of degree {}, knots {knots:?}", nurbs.degree);
                 for (i, point) in nurbs.points.iter().enumerate() {
-                    let weight = nurbs.weights.as_ref().map_or(String::new(), |w| format!(" weight {}", w[i]));
+                    let weight =
+                        nurbs.weights.as_ref().map_or(String::new(), |w| format!(" weight {}", w[i]));
                     let _ = writeln!(text, "    {}{weight}", at(point));
                 }
             }
@@ -104,7 +105,8 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
         Step::Tool(number) => writeln!(text, "tool {number}"),
         Step::Spindle(rpm) => writeln!(text, "spindle {rpm}"),
         Step::Rapid(targets) => {
-            let words: Vec<String> = targets.iter().map(|(axis, to)| format!("{} {to}", axes.name(*axis))).collect();
+            let words: Vec<String> =
+                targets.iter().map(|(axis, to)| format!("{} {to}", axes.name(*axis))).collect();
             writeln!(text, "rapid {}", words.join(" "))
         }
         Step::Cut(Cut { feed, role, curve: shape }) => {
@@ -129,7 +131,11 @@ fn points(text: &mut String, axes: &Axes, kind: &str, line: &Polyline) {
 
 fn position(axes: &Axes, point: &Position) -> String {
     let mut buffer = zmij::Buffer::new();
-    let words: Vec<String> =
-        axes.as_slice().iter().enumerate().map(|(i, (axis, _))| format!("{axis} {}", buffer.format(point[i] + 0.0))).collect();
+    let words: Vec<String> = axes
+        .as_slice()
+        .iter()
+        .enumerate()
+        .map(|(i, (axis, _))| format!("{axis} {}", buffer.format(point[i] + 0.0)))
+        .collect();
     words.join(" ")
 }

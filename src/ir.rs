@@ -79,6 +79,8 @@ pub struct Intent {
     pub program: Program<f64, Curve>,
     /// The tolerance of the input, mm, and where it stands.
     pub tolerance: Option<(f64, Span)>,
+    /// Where the program's name stands in the input.
+    pub name_span: Option<Span>,
 }
 
 /// A shape that can be evaluated exactly.
@@ -269,7 +271,8 @@ impl PolynomialBlock {
         let length = self.pl.to_f64();
         let mut points = [[0.0; MAX_AXES]; 6];
         for axis in 0..MAX_AXES {
-            let (first, last) = (units_to_f64(start[axis], digits[axis]), units_to_f64(self.end[axis], digits[axis]));
+            let (first, last) =
+                (units_to_f64(start[axis], digits[axis]), units_to_f64(self.end[axis], digits[axis]));
             let mut a = [first, 0.0, 0.0, 0.0, 0.0, 0.0];
             let mut power = length;
             let mut rest = last - first;

@@ -105,9 +105,21 @@ impl From<Diagnostics> for Failure {
 ///
 /// # Errors
 /// The input is wrong, the machine cannot do it, or the program does not verify.
-pub fn compile(sources: &Sources, language: &Language, machine: &Machine, options: &Options) -> Result<Output, Failure> {
+pub fn compile(
+    sources: &Sources,
+    language: &Language,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Output, Failure> {
     let intent = with_options((language.parse)(sources)?, options);
     let machine = machine.with_axes(&intent.program.axes)?;
+    if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {
+        let diagnostic = match intent.name_span {
+            Some(span) => diagnostic.at(span, ""),
+            None => diagnostic,
+        };
+        return Err(Diagnostics::from(diagnostic).into());
+    }
     let tolerance = tolerance(&intent, &machine, options)?;
     let mut warnings = Diagnostics::new();
     let motion = match options.motion.or(machine.motion) {
@@ -168,12 +180,20 @@ fn attempt(
     drop(legal.value);
     match verify_text(intent, &text, SourceId::PROGRAM, machine, tolerance) {
         Ok(report) => Ok((text, Some(report), legal.warnings)),
-        Err(diagnostics) => Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) }),
+        Err(diagnostics) => {
+            Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) })
+        }
     }
 }
 
 /// Reads a program and compares it with a settled intent.
-fn verify_text(intent: &Intent, text: &str, id: SourceId, machine: &Machine, tolerance: f64) -> Result<Report, Diagnostics> {
+fn verify_text(
+    intent: &Intent,
+    text: &str,
+    id: SourceId,
+    machine: &Machine,
+    tolerance: f64,
+) -> Result<Report, Diagnostics> {
     let reading = (machine.dialect.read)(text, id, machine)?;
     verify::verify(intent, &reading.value, text, id, machine, tolerance)
 }
@@ -209,6 +229,8 @@ pub fn verify_program(
     let reading = (machine.dialect.read)(text, program, &machine)?;
     let intent = pass::settle::settle(&intent, form_of(&reading.value.decimals), tolerance)?;
     let report = verify::verify(&intent, &reading.value, text, program, &machine, tolerance)?;
+    let legal = pass::check::check(reading.value.decimals, &machine)?;
+    verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
     let mut warnings = reading.warnings;
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
     Ok(Verified { report, intent, tolerance, warnings })
@@ -276,11 +298,15 @@ fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f6
         None => diagnostic,
     };
     if !(0.0 < tolerance && tolerance.is_finite()) {
-        return Err(at(Diagnostic::error("tolerance-range", "the tolerance must be greater than zero")).into());
+        return Err(
+            at(Diagnostic::error("tolerance-range", "the tolerance must be greater than zero")).into()
+        );
     }
     let least = resolution(intent, machine);
     if tolerance < least {
-        let message = format!("the tolerance of {tolerance} mm is below what the machine's decimals carry, {least:.2e} mm");
+        let message = format!(
+            "the tolerance of {tolerance} mm is below what the machine's decimals carry, {least:.2e} mm"
+        );
         let diagnostic = Diagnostic::error("tolerance-below-decimals", message)
             .hint("allow a larger tolerance, or give the axes more decimals in the machine file");
         return Err(at(diagnostic).into());

@@ -143,7 +143,8 @@ impl Table {
                 tidy(row.er_pa_rad * 1.0e4)
             );
         }
-        for (name, value) in [("MaxErPA", self.max), ("MaxErPAo", self.max_odd), ("MaxErPAe", self.max_even)] {
+        for (name, value) in [("MaxErPA", self.max), ("MaxErPAo", self.max_odd), ("MaxErPAe", self.max_even)]
+        {
             let _ = writeln!(text, "{name:<8}{:>48.5}", value * 1.0e4);
         }
         text

@@ -73,8 +73,14 @@ impl Summary {
         if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
             notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
         }
-        notes.push("the path is that of the contact point; the wheel's radius and profile are not modelled".to_owned());
-        notes.push("the proof covers the programmed path, not what the control's own smoothing or compressor adds".to_owned());
+        notes.push(
+            "the path is that of the contact point; the wheel's radius and profile are not modelled"
+                .to_owned(),
+        );
+        notes.push(
+            "the proof covers the programmed path, not what the control's own smoothing or compressor adds"
+                .to_owned(),
+        );
         Summary {
             name: intent.program.name.clone(),
             machine: machine.to_owned(),
@@ -97,7 +103,10 @@ impl Summary {
     pub fn render(&self) -> String {
         let mut text = String::new();
         let motion = self.motion.as_deref().map_or(String::new(), |motion| format!(", {motion}"));
-        let flutes = self.cutter.as_ref().map_or(String::new(), |c| format!(", {} flute{}", c.flutes, plural(c.flutes)));
+        let flutes = self
+            .cutter
+            .as_ref()
+            .map_or(String::new(), |c| format!(", {} flute{}", c.flutes, plural(c.flutes)));
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}: {}{motion}{flutes}", self.name, self.machine);
         let cutting = self.path_blocks.map_or(String::new(), |n| format!(", {n} of them cutting"));
@@ -118,7 +127,8 @@ impl Summary {
             }
         }
         if let (Some(mm), Some(rad)) = (self.steps_from_ideal_mm, self.steps_from_ideal_rad) {
-            let dl = self.cutter.as_ref().and_then(|c| c.dl).map_or(String::new(), |dl| format!(" at dl = {dl}"));
+            let dl =
+                self.cutter.as_ref().and_then(|c| c.dl).map_or(String::new(), |dl| format!(" at dl = {dl}"));
             let _ = writeln!(text, "  steps      {mm:.2e} mm, {rad:.2e} rad from the ideal curve{dl}");
         }
         if let Some(cutter) = &self.cutter {

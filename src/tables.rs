@@ -54,7 +54,22 @@ fn from_toml(error: &toml::de::Error, source: SourceId) -> Diagnostic {
     } else {
         "toml-syntax"
     };
-    let diagnostic = Diagnostic::error(id, message.lines().next().unwrap_or_default());
+    let mut phrase = message.lines().next().unwrap_or_default().to_owned();
+    // In the user's words, not in Rust's.
+    for (rust, plain) in [
+        ("expected f64", "expected a number"),
+        ("expected i64", "expected a whole number"),
+        ("expected u8", "expected a small whole number"),
+        ("expected u32", "expected a whole number"),
+        ("expected usize", "expected a whole number"),
+        ("expected struct", "expected a table"),
+    ] {
+        if let Some(at) = phrase.find(rust) {
+            phrase.truncate(at);
+            phrase.push_str(plain);
+        }
+    }
+    let diagnostic = Diagnostic::error(id, phrase);
     match error.span() {
         Some(range) => diagnostic.at(Span::new(source, range), ""),
         None => diagnostic,
@@ -66,8 +81,9 @@ fn walk(table: &DeTable<'_>, keys: &[Key], within: &str, source: SourceId, diagn
         let name = key.get_ref().as_ref();
         let Some(known) = keys.iter().find(|known| known.name == name) else {
             let place = if within.is_empty() { "this file".to_owned() } else { format!("[{within}]") };
-            let mut diagnostic = Diagnostic::error("key-unknown", format!("`{name}` is not a key of {place}"))
-                .at(Span::new(source, key.span()), "unknown key");
+            let mut diagnostic =
+                Diagnostic::error("key-unknown", format!("`{name}` is not a key of {place}"))
+                    .at(Span::new(source, key.span()), "unknown key");
             diagnostic = match nearest(name, keys.iter().map(|key| key.name)) {
                 Some(meant) => diagnostic.hint(format!("did you mean `{meant}`?")),
                 None => {
@@ -112,7 +128,8 @@ mod tests {
         length: toml::Spanned<f64>,
     }
 
-    const KEYS: &[Key] = &[Key::value("name"), Key::table("cutter", &[Key::value("length"), Key::value("flutes")])];
+    const KEYS: &[Key] =
+        &[Key::value("name"), Key::table("cutter", &[Key::value("length"), Key::value("flutes")])];
 
     #[test]
     fn every_unknown_key_is_reported_with_what_was_meant() {

@@ -1,1 +1,20 @@
+//! All tests that need more than one module, in one binary.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `golden` | inputs and every machine's output, side by side, as bytes |
+//! | `errors` | bad inputs and their rendered diagnostics |
+//! | `paper` | the table of the paper, row by row |
+//! | `roundtrip` | what is written reads back to the same text |
+//! | `damage` | a program changed in any word is refused |
+//! | `cli` | exit codes, files, streams |
+//! | `tidy` | documents, fixtures and rules in step with the code |
 
+mod cli;
+mod damage;
+mod errors;
+mod golden;
+mod paper;
+mod roundtrip;
+mod support;
+mod tidy;

@@ -37,7 +37,10 @@ impl Check {
                 let Some(input) = sources.get(SourceId::INPUT) else { return Err(Diagnostics::new()) };
                 let job = cutter::parse(input, SourceId::INPUT)?;
                 if job.process.feed.is_none() || job.process.retract.is_none() {
-                    let note = Diagnostic::note("process-incomplete", "a program would need feed and retract under [process]");
+                    let note = Diagnostic::note(
+                        "process-incomplete",
+                        "a program would need feed and retract under [process]",
+                    );
                     console.diagnostics(&note.into(), sources);
                 }
             }
@@ -54,14 +57,20 @@ pub(super) enum Kind {
 }
 
 /// An NC program where `--from nc` says so, or where a machine is named and the text is no cutter.
-pub(super) fn program_or_input(from: Option<&str>, to: Option<&str>, sources: &Sources) -> Result<Kind, Diagnostics> {
+pub(super) fn program_or_input(
+    from: Option<&str>,
+    to: Option<&str>,
+    sources: &Sources,
+) -> Result<Kind, Diagnostics> {
     let looks_like_input =
         sources.get(SourceId::INPUT).is_some_and(|input| splinepost::front::detect(input).is_ok());
     match (from, to) {
         (Some("nc"), Some(_)) => Ok(Kind::Program),
-        (Some("nc"), None) => {
-            Err(Diagnostic::error("machine-missing", "an NC program is read with the machine that --to names").into())
-        }
+        (Some("nc"), None) => Err(Diagnostic::error(
+            "machine-missing",
+            "an NC program is read with the machine that --to names",
+        )
+        .into()),
         (None, Some(_)) if !looks_like_input => Ok(Kind::Program),
         _ => super::compile::language(from, sources).map(|_| Kind::Input),
     }

@@ -57,7 +57,8 @@ impl Interpolate {
             flute.method = Method::from(method);
         }
         let table = Table::new(&flute, tolerance).map_err(|error| {
-            Diagnostic::refusal("points-too-many", error.to_string()).hint("allow a larger tolerance, or state dl")
+            Diagnostic::refusal("points-too-many", error.to_string())
+                .hint("allow a larger tolerance, or state dl")
         })?;
         io::print(&match self.format {
             Format::Text => table.to_text(),

@@ -53,7 +53,7 @@ impl Console {
     }
 
     /// 1 where the answer is no, 2 where something is wrong.
-    pub(crate) fn exit_code(&self, diagnostics: &Diagnostics) -> ExitCode {
+    pub(crate) fn exit_code(diagnostics: &Diagnostics) -> ExitCode {
         match diagnostics.worst() {
             Severity::Refusal => ExitCode::from(1),
             Severity::Error | Severity::Warning | Severity::Note => ExitCode::from(2),
@@ -86,10 +86,13 @@ fn read_bytes(path: &str) -> Result<Vec<u8>, Diagnostics> {
 pub(crate) fn read_text(path: &str) -> Result<String, Diagnostics> {
     String::from_utf8(read_bytes(path)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
-        Diagnostic::error("not-utf8", format!("{path} is not UTF-8: line {line} has a byte that cannot be read"))
-            .hint("save the file as UTF-8")
-            .into()
+        let line = error.as_bytes()[..at].split(|b| *b == b'\n').count();
+        Diagnostic::error(
+            "not-utf8",
+            format!("{path} is not UTF-8: line {line} has a byte that cannot be read"),
+        )
+        .hint("save the file as UTF-8")
+        .into()
     })
 }
 

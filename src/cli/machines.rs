@@ -19,9 +19,12 @@ impl Machines {
         if let Some(name) = &self.show {
             return match built_in(name) {
                 Some(text) => io::print(text),
-                None => Err(Diagnostic::error("machine-unknown", format!("there is no built-in machine `{name}`"))
-                    .hint("`splinepost machines` lists them")
-                    .into()),
+                None => Err(Diagnostic::error(
+                    "machine-unknown",
+                    format!("there is no built-in machine `{name}`"),
+                )
+                .hint("`splinepost machines` lists them")
+                .into()),
             };
         }
         let mut text = String::new();

@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(diagnostics) => {
             console.diagnostics(&diagnostics, &sources);
-            console.exit_code(&diagnostics)
+            Console::exit_code(&diagnostics)
         }
     }
 }
@@ -101,10 +101,14 @@ fn machine(to: &str, sources: &mut Sources) -> Result<Machine, Diagnostics> {
     let path = std::path::Path::new(to);
     if !path.exists() {
         let names = machine::BUILT_IN.iter().map(|(name, _)| *name);
-        let error = Diagnostic::error("machine-unknown", format!("`{to}` is neither a built-in machine nor a file"));
+        let error =
+            Diagnostic::error("machine-unknown", format!("`{to}` is neither a built-in machine nor a file"));
         let hint = match nearest(to, names.clone()) {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("built in are {}; a machine file is given by its path", names.collect::<Vec<_>>().join(", ")),
+            None => format!(
+                "built in are {}; a machine file is given by its path",
+                names.collect::<Vec<_>>().join(", ")
+            ),
         };
         return Err(error.hint(hint).into());
     }
@@ -117,8 +121,10 @@ fn machine(to: &str, sources: &mut Sources) -> Result<Machine, Diagnostics> {
 fn motion(name: Option<&str>, machine: &Machine) -> Result<Option<&'static Motion>, Diagnostics> {
     let Some(name) = name.filter(|name| *name != "auto") else { return Ok(None) };
     machine.dialect.motion(name).map(Some).ok_or_else(|| {
-        let error =
-            Diagnostic::error("motion-unknown", format!("`{name}` is not a motion of {}", machine.dialect.name));
+        let error = Diagnostic::error(
+            "motion-unknown",
+            format!("`{name}` is not a motion of {}", machine.dialect.name),
+        );
         error.hint(format!("its motions are auto, {}", machine.dialect.motion_names())).into()
     })
 }

@@ -92,7 +92,9 @@ impl<'m> Assembler<'m> {
             let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
             self.error(
                 "digits-too-many",
-                format!("{name} {value} has more decimals than the {digits} that the machine file gives this axis"),
+                format!(
+                    "{name} {value} has more decimals than the {digits} that the machine file gives this axis"
+                ),
                 range,
             );
         }
@@ -106,8 +108,11 @@ impl<'m> Assembler<'m> {
             if self.position[i].is_none() && !self.warned_start {
                 self.warned_start = true;
                 self.diagnostics.push(
-                    Diagnostic::warning("start-unknown", "the first cut starts at a position that the text does not say")
-                        .at(span, "starts from an unknown position"),
+                    Diagnostic::warning(
+                        "start-unknown",
+                        "the first cut starts at a position that the text does not say",
+                    )
+                    .at(span, "starts from an unknown position"),
                 );
             }
             *start = self.position[i].unwrap_or(fallback[i]);
@@ -126,6 +131,12 @@ impl<'m> Assembler<'m> {
             target[*axis] = *units;
         }
         target
+    }
+
+    /// A program without steps, to evaluate a curve in.
+    pub fn empty(&self) -> Decimals {
+        let program = Program { name: String::new(), axes: self.machine.axes, steps: Vec::new() };
+        Decimals { program, digits: self.digits }
     }
 
     /// The tool that was called last.
@@ -157,7 +168,8 @@ impl<'m> Assembler<'m> {
 
     /// Adds a rapid of the axes named.
     pub fn rapid(&mut self, named: &[(usize, i64)], span: Span) {
-        let targets = named.iter().map(|(axis, units)| (*axis, Decimal::new(*units, self.digits[*axis]))).collect();
+        let targets =
+            named.iter().map(|(axis, units)| (*axis, Decimal::new(*units, self.digits[*axis]))).collect();
         for (axis, units) in named {
             self.position[*axis] = Some(*units);
         }

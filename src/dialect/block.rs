@@ -129,13 +129,21 @@ impl<'m> Frame<'m> {
     pub fn may_begin(&self, text: &str) -> bool {
         let frame = &self.machine.frame;
         let first = text.as_bytes().first();
-        [&frame.tool_spindle, &frame.tool, &frame.spindle, &frame.footer]
-            .into_iter()
-            .any(|lines| lines.first().is_some_and(|template| template.0.as_bytes().first() == first && template.matched(text).is_some()))
+        [&frame.tool_spindle, &frame.tool, &frame.spindle, &frame.footer].into_iter().any(|lines| {
+            lines.first().is_some_and(|template| {
+                template.0.as_bytes().first() == first && template.matched(text).is_some()
+            })
+        })
     }
 
     /// Meets a line, without its block number.
-    pub fn meet(&mut self, text: &str, span: Span, range: Range<usize>, assembler: &mut Assembler<'m>) -> Met {
+    pub fn meet(
+        &mut self,
+        text: &str,
+        span: Span,
+        range: Range<usize>,
+        assembler: &mut Assembler<'m>,
+    ) -> Met {
         let frame = &self.machine.frame;
         if let Some(template) = self.pending.first().copied() {
             self.pending.remove(0);
@@ -153,7 +161,11 @@ impl<'m> Frame<'m> {
                 return Met::Fixed;
             }
             if 0 < self.header {
-                assembler.error("header-differs", format!("here the machine file has `{}`", template.0), range);
+                assembler.error(
+                    "header-differs",
+                    format!("here the machine file has `{}`", template.0),
+                    range,
+                );
                 self.header = frame.header.len();
                 return Met::Fixed;
             }
@@ -163,7 +175,11 @@ impl<'m> Frame<'m> {
             match frame.footer.get(self.footer) {
                 Some(template) if self.take(template, text, span, true, assembler) => self.footer += 1,
                 Some(template) => {
-                    assembler.error("footer-differs", format!("here the machine file has `{}`", template.0), range);
+                    assembler.error(
+                        "footer-differs",
+                        format!("here the machine file has `{}`", template.0),
+                        range,
+                    );
                 }
                 None => assembler.error("text-after-end", "text after the end of the program", range),
             }
@@ -191,7 +207,14 @@ impl<'m> Frame<'m> {
     }
 
     /// Takes a line that is a template filled in: its tool and spindle become steps, its name the program's.
-    fn take(&mut self, template: &Template, text: &str, span: Span, first: bool, assembler: &mut Assembler<'m>) -> bool {
+    fn take(
+        &mut self,
+        template: &Template,
+        text: &str,
+        span: Span,
+        first: bool,
+        assembler: &mut Assembler<'m>,
+    ) -> bool {
         let Some(values) = template.matched(text) else { return false };
         for (variable, value) in values {
             match variable.as_str() {

@@ -79,7 +79,11 @@ impl<'m> Modal<'m> {
     }
 
     /// The lines of a tool call or a spindle's start, and how many steps they cover.
-    pub fn frame_lines<C>(&self, step: &Step<Decimal, C>, next: Option<&Step<Decimal, C>>) -> (Vec<String>, usize) {
+    pub fn frame_lines<C>(
+        &self,
+        step: &Step<Decimal, C>,
+        next: Option<&Step<Decimal, C>>,
+    ) -> (Vec<String>, usize) {
         let frame = &self.machine.frame;
         let fill = |lines: &[Template], tool: &str, rpm: &str| {
             lines.iter().map(|line| line.fill(&[("tool", tool), ("rpm", rpm)])).collect()

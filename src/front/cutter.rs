@@ -124,6 +124,8 @@ struct RetractTable {
 pub struct CutterJob {
     /// The program's name.
     pub name: String,
+    /// Where it stands in the file.
+    pub name_span: Option<Span>,
     /// The paths of the flutes, in order.
     pub flutes: Vec<Logarithmic>,
     /// The tolerance of the input, mm, and where it stands.
@@ -168,7 +170,14 @@ impl Reader {
     }
 
     /// A number that is finite and lies within what `holds` says.
-    fn number(&mut self, key: &str, value: &Spanned<f64>, id: &'static str, must: &str, holds: impl Fn(f64) -> bool) -> f64 {
+    fn number(
+        &mut self,
+        key: &str,
+        value: &Spanned<f64>,
+        id: &'static str,
+        must: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> f64 {
         let x = *value.get_ref();
         if !x.is_finite() {
             self.error("not-finite", format!("{key} must be a finite number"), value.span());
@@ -200,7 +209,8 @@ impl Reader {
 /// # Errors
 /// Whatever keeps a path from being made of it, all at once where that makes sense.
 pub fn parse(source: &Source, id: SourceId) -> Result<CutterJob, Diagnostics> {
-    let text = source.text.strip_prefix('\u{feff}').map_or_else(|| source.text.clone(), |rest| format!("   {rest}"));
+    let text =
+        source.text.strip_prefix('\u{feff}').map_or_else(|| source.text.clone(), |rest| format!("   {rest}"));
     let file: File = tables::read(&text, id, KEYS)?;
     let mut reader = Reader { source: id, diagnostics: Diagnostics::new() };
     let job = reader.job(file, text.len());
@@ -223,7 +233,10 @@ impl Reader {
         let cutter_span = self.span(cutter.span());
         let name = file.name.as_ref().map_or_else(|| "CUTTER".to_owned(), |name| name.get_ref().clone());
         if let Some(spanned) = &file.name
-            && (name.is_empty() || 64 < name.len() || !name.bytes().all(|b| (32..127).contains(&b)) || name.trim() != name)
+            && (name.is_empty()
+                || 64 < name.len()
+                || !name.bytes().all(|b| (32..127).contains(&b))
+                || name.trim() != name)
         {
             self.error("name-characters", "name must be 1 to 64 printable ASCII characters", spanned.span());
         }
@@ -235,7 +248,10 @@ impl Reader {
         );
         let tolerance = interpolation.tolerance.as_ref().map(|value| {
             let span = self.span(value.span());
-            (self.number("tolerance", value, "tolerance-range", "must be greater than zero", |x| 0.0 < x), span)
+            (
+                self.number("tolerance", value, "tolerance-range", "must be greater than zero", |x| 0.0 < x),
+                span,
+            )
         });
         let dl = interpolation
             .dl
@@ -245,7 +261,11 @@ impl Reader {
         let overrun = interpolation.overrun.unwrap_or(false);
         if overrun && method == Method::Direct {
             let span = interpolation.method.as_ref().map_or(0..0, Spanned::span);
-            self.error("overrun-direct", "overrun is a rule of odd-even steps; the direct method ends exactly", span);
+            self.error(
+                "overrun-direct",
+                "overrun is a rule of odd-even steps; the direct method ends exactly",
+                span,
+            );
         }
         if let (Some(step), Some(spanned)) = (dl, &interpolation.dl)
             && 0.0 < step
@@ -264,14 +284,20 @@ impl Reader {
             .into_iter()
             .map(|index| Logarithmic { curve: curve.with_index(index), method, dl, overrun })
             .collect();
-        Some(CutterJob { name, flutes, tolerance, process, span: cutter_span })
+        let name_span = file.name.as_ref().map(|name| self.span(name.span()));
+        Some(CutterJob { name, name_span, flutes, tolerance, process, span: cutter_span })
     }
 
     /// The curve of the first flute and the index of each.
     fn cutter(&mut self, table: &Spanned<CutterTable>) -> Option<(LogCurve, Vec<f64>)> {
         let t = table.get_ref();
-        let required =
-            [("D1", &t.D1, "10.0"), ("S", &t.S, "30.0"), ("C", &t.C, "5.0"), ("r", &t.r, "8.0"), ("length", &t.length, "30.0")];
+        let required = [
+            ("D1", &t.D1, "10.0"),
+            ("S", &t.S, "30.0"),
+            ("C", &t.C, "5.0"),
+            ("r", &t.r, "8.0"),
+            ("length", &t.length, "30.0"),
+        ];
         let mut missing = false;
         for (key, value, example) in required {
             if value.is_none() {
@@ -323,7 +349,11 @@ impl Reader {
     fn indices(&mut self, t: &CutterTable) -> Vec<f64> {
         match (&t.flutes, &t.index) {
             (Some(flutes), Some(_)) => {
-                self.error("flutes-and-index", "flutes and index both say how many flutes there are", flutes.span());
+                self.error(
+                    "flutes-and-index",
+                    "flutes and index both say how many flutes there are",
+                    flutes.span(),
+                );
                 vec![0.0]
             }
             (_, Some(index)) => {
@@ -334,7 +364,15 @@ impl Reader {
                 index
                     .get_ref()
                     .iter()
-                    .map(|value| self.number("index", value, "index-range", "must lie within -360 and 360 degrees", in_range))
+                    .map(|value| {
+                        self.number(
+                            "index",
+                            value,
+                            "index-range",
+                            "must lie within -360 and 360 degrees",
+                            in_range,
+                        )
+                    })
                     .collect()
             }
             (Some(flutes), None) => {
@@ -354,9 +392,12 @@ impl Reader {
         let Some(table) = table else { return process };
         let positive = |x: f64| 0.0 < x && x < 1.0e6;
         let must = "must be greater than zero and below a million";
-        process.feed = table.feed.as_ref().map(|value| self.number("feed", value, "feed-range", must, positive));
-        process.spindle =
-            table.spindle.as_ref().map(|value| self.number("spindle", value, "spindle-range", must, positive));
+        process.feed =
+            table.feed.as_ref().map(|value| self.number("feed", value, "feed-range", must, positive));
+        process.spindle = table
+            .spindle
+            .as_ref()
+            .map(|value| self.number("spindle", value, "spindle-range", must, positive));
         if let Some(tool) = &table.tool {
             match u32::try_from(*tool.get_ref()) {
                 Ok(number) if (1..=99_999_999).contains(&number) => process.tool = number,
@@ -372,10 +413,16 @@ impl Reader {
                     if linear.is_none() {
                         self.error("retract-axis", "the retract axis is X, Y or Z", axis.span());
                     }
-                    let to = self.number("to", to, "retract-range", "must lie within a million mm", |x| x.abs() < 1.0e6);
+                    let to = self.number("to", to, "retract-range", "must lie within a million mm", |x| {
+                        x.abs() < 1.0e6
+                    });
                     process.retract = linear.map(|axis| (axis, to));
                 }
-                _ => self.error("retract-missing", "retract needs axis and to, as { axis = \"Z\", to = 50.0 }", retract.span()),
+                _ => self.error(
+                    "retract-missing",
+                    "retract needs axis and to, as { axis = \"Z\", to = 50.0 }",
+                    retract.span(),
+                ),
             }
         }
         process
@@ -400,7 +447,11 @@ pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostic
         missing("feed-missing", "a feed", "feed = 200.0");
     }
     if job.process.retract.is_none() {
-        missing("retract-missing", "a place in clear air to retract to", "retract = { axis = \"Z\", to = 50.0 }");
+        missing(
+            "retract-missing",
+            "a place in clear air to retract to",
+            "retract = { axis = \"Z\", to = 50.0 }",
+        );
     }
     if let Some((axis, to)) = job.process.retract {
         let clear = job.flutes.iter().all(|flute| {
@@ -411,9 +462,12 @@ pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostic
         if !clear {
             let name = Axes::xyza().name(axis);
             diagnostics.push(
-                Diagnostic::error("retract-not-clear", format!("{name} {to} lies on the way that {name} takes over the cutter"))
-                    .at(job.process.span, "")
-                    .hint("retract to a position that the path does not reach"),
+                Diagnostic::error(
+                    "retract-not-clear",
+                    format!("{name} {to} lies on the way that {name} takes over the cutter"),
+                )
+                .at(job.process.span, "")
+                .hint("retract to a position that the path does not reach"),
             );
         }
     }
@@ -462,7 +516,11 @@ impl CutterJob {
                 add(Step::Rapid(vec![(axis, to)]));
             }
         }
-        Intent { program: Program { name: self.name.clone(), axes, steps }, tolerance: self.tolerance }
+        Intent {
+            program: Program { name: self.name.clone(), axes, steps },
+            tolerance: self.tolerance,
+            name_span: self.name_span,
+        }
     }
 }
 
@@ -494,7 +552,8 @@ mod tests {
 
     #[test]
     fn a_flute_is_retracted_before_anything_turns() {
-        let text = format!("{PAPER}flutes = 2\n[process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\n");
+        let text =
+            format!("{PAPER}flutes = 2\n[process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\n");
         let intent = parse_program(&Source::new("t", text), SourceId::INPUT).unwrap();
         let moves: Vec<(usize, f64)> = intent
             .program

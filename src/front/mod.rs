@@ -49,11 +49,14 @@ pub fn find(name: &str) -> Option<&'static Language> {
 /// # Errors
 /// No language or several fit.
 pub fn detect(input: &Source) -> Result<&'static Language, Diagnostics> {
-    let fitting: Vec<&Language> = LANGUAGES.iter().filter(|language| (language.recognise)(&input.text)).collect();
+    let fitting: Vec<&Language> =
+        LANGUAGES.iter().filter(|language| (language.recognise)(&input.text)).collect();
     if let [one] = fitting[..] {
         return find(one.name).ok_or_else(Diagnostics::new);
     }
-    if fitting.is_empty() && std::path::Path::new(&input.name).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+    if fitting.is_empty()
+        && std::path::Path::new(&input.name).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    {
         // Said to be TOML: the cutter reader knows best what is missing.
         return find("cutter").ok_or_else(Diagnostics::new);
     }

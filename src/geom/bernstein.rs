@@ -174,7 +174,11 @@ mod tests {
             let t = f64::from(i) / 16.0;
             // A few roundings of numbers below 20.
             assert_relative_eq!(f.times(&g).eval(t), f.eval(t) * g.eval(t), epsilon = 1e-14);
-            assert_relative_eq!(f.combined(2.0, &g, -1.0).eval(t), 2.0 * f.eval(t) - g.eval(t), epsilon = 1e-14);
+            assert_relative_eq!(
+                f.combined(2.0, &g, -1.0).eval(t),
+                2.0 * f.eval(t) - g.eval(t),
+                epsilon = 1e-14
+            );
             assert_relative_eq!(left.eval(t), f.eval(0.5 * t), epsilon = 1e-14);
             assert_relative_eq!(right.eval(t), f.eval(0.5 + 0.5 * t), epsilon = 1e-14);
         }

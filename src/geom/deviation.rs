@@ -286,7 +286,9 @@ mod tests {
 
     #[test]
     fn bounds_are_above_samples_and_not_far_above() {
-        for (c, index, weights) in [(5.0, 0.0, [1.0; 4]), (-5.0, 90.0, [1.0, 1.2, 0.9, 1.0]), (0.0, 7.0, [1.0; 4])] {
+        for (c, index, weights) in
+            [(5.0, 0.0, [1.0; 4]), (-5.0, 90.0, [1.0, 1.2, 0.9, 1.0]), (0.0, 7.0, [1.0; 4])]
+        {
             let curve = LogCurve::new(Cutter { c, ..paper() }, index).unwrap();
             let at = |share: f64, a: f64| {
                 let mut p = curve.position(30.0 * share);

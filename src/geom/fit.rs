@@ -194,7 +194,9 @@ fn cubic(curve: &LogCurve, x0: f64, x1: f64) -> Bezier {
         for (row, p) in [0.5 * (1.0 - C), 0.5 * (1.0 + C)].into_iter().enumerate() {
             let r = 1.0 - p;
             let b = [r * r * r, 3.0 * p * r * r, 3.0 * p * p * r, p * p * p];
-            let sum = |of: fn(&(f64, f64)) -> f64| points.iter().zip(b).map(|(point, b)| b * of(point)).sum::<f64>();
+            let sum = |of: fn(&(f64, f64)) -> f64| {
+                points.iter().zip(b).map(|(point, b)| b * of(point)).sum::<f64>()
+            };
             let (x, a) = (sum(|point| point.0), sum(|point| point.1));
             let slope = curve.slope(x);
             f[row] = a - curve.angle(x);
@@ -233,7 +235,11 @@ mod tests {
     fn c_levels_the_three_extremes() {
         // (1 − y²)²(y² − c²) is −c² at 0 and 4(1 − c²)³/27 at y² = (1 + 2c²)/3.
         let c2 = C * C;
-        approx::assert_relative_eq!(c2, 4.0 * (1.0 - c2) * (1.0 - c2) * (1.0 - c2) / 27.0, max_relative = 1e-14);
+        approx::assert_relative_eq!(
+            c2,
+            4.0 * (1.0 - c2) * (1.0 - c2) * (1.0 - c2) / 27.0,
+            max_relative = 1e-14
+        );
     }
 
     #[test]
@@ -254,11 +260,14 @@ mod tests {
             let pieces: Vec<Bezier> = breaks.windows(2).map(|pair| fit(pair[0], pair[1])).collect();
             worst(&curve, &pieces)
         };
-        let cubic_rate = error(2, 6.0, &|a, b| cubic(&curve, a, b)) / error(4, 6.0, &|a, b| cubic(&curve, a, b));
+        let cubic_rate =
+            error(2, 6.0, &|a, b| cubic(&curve, a, b)) / error(4, 6.0, &|a, b| cubic(&curve, a, b));
         assert!((45.0..90.0).contains(&cubic_rate), "{cubic_rate}");
-        let quintic_rate = error(4, 6.0, &|a, b| quintic(&curve, a, b)) / error(8, 6.0, &|a, b| quintic(&curve, a, b));
+        let quintic_rate =
+            error(4, 6.0, &|a, b| quintic(&curve, a, b)) / error(8, 6.0, &|a, b| quintic(&curve, a, b));
         assert!((45.0..90.0).contains(&quintic_rate), "{quintic_rate}");
-        let hermite_rate = error(8, 4.0, &|a, b| hermite(&curve, a, b)) / error(16, 4.0, &|a, b| hermite(&curve, a, b));
+        let hermite_rate =
+            error(8, 4.0, &|a, b| hermite(&curve, a, b)) / error(16, 4.0, &|a, b| hermite(&curve, a, b));
         assert!((13.0..19.0).contains(&hermite_rate), "{hermite_rate}");
     }
 

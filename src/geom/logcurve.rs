@@ -106,7 +106,8 @@ impl LogCurve {
     /// that comes to a point before its end.
     pub fn new(cutter: Cutter, index: f64) -> Result<LogCurve, CutterError> {
         let Cutter { d1, s, c, r, length, hand, law } = cutter;
-        for (name, value) in [("D1", d1), ("S", s), ("C", c), ("r", r), ("length", length), ("index", index)] {
+        for (name, value) in [("D1", d1), ("S", s), ("C", c), ("r", r), ("length", length), ("index", index)]
+        {
             if !value.is_finite() {
                 return Err(CutterError::NotFinite(name));
             }
@@ -152,11 +153,6 @@ impl LogCurve {
     #[must_use]
     pub fn with_index(&self, index: f64) -> LogCurve {
         LogCurve { index, ..*self }
-    }
-
-    /// The same curve on to another X, where the diameter allows it.
-    pub fn with_end(&self, end: f64) -> Result<LogCurve, CutterError> {
-        LogCurve::new(Cutter { length: end, ..self.cutter }, self.index)
     }
 
     /// k = ab = 2 tan S / D1, rad/mm, with the sign of the hand: dA/dX at X = 0.
@@ -287,7 +283,11 @@ pub(crate) mod tests {
     #[test]
     fn cylinder_and_straight_flute_are_limits() {
         let cylinder = LogCurve::new(Cutter { c: 0.0, ..paper() }, 0.0).unwrap();
-        assert_relative_eq!(cylinder.angle(30.0), 30.0 * 2.0 * tan(30.0 / DEGREES) / 10.0, max_relative = 4e-16);
+        assert_relative_eq!(
+            cylinder.angle(30.0),
+            30.0 * 2.0 * tan(30.0 / DEGREES) / 10.0,
+            max_relative = 4e-16
+        );
         // ln(1+ε)/ε = 1 − ε/2, and ε = bX is 1e-8 of a cone angle of 1e-8 rad times 6.
         let nearly = LogCurve::new(Cutter { c: 1e-8, ..paper() }, 0.0).unwrap();
         assert_relative_eq!(nearly.angle(30.0), cylinder.angle(30.0), max_relative = 1e-9);
@@ -315,7 +315,11 @@ pub(crate) mod tests {
         let curve = LogCurve::new(paper(), 0.0).unwrap();
         // lead = π D / tan S
         let d2 = 10.0 + 60.0 * tan(5.0 / DEGREES);
-        assert_relative_eq!(curve.lead(30.0), std::f64::consts::PI * d2 / tan(30.0 / DEGREES), max_relative = 1e-14);
+        assert_relative_eq!(
+            curve.lead(30.0),
+            std::f64::consts::PI * d2 / tan(30.0 / DEGREES),
+            max_relative = 1e-14
+        );
         assert_relative_eq!(curve.helix_axial(30.0), 30.0, max_relative = 1e-14);
     }
 }

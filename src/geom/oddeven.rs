@@ -274,16 +274,24 @@ mod tests {
     #[test]
     fn a_step_beyond_the_formulas_is_refused() {
         let curve = LogCurve::new(paper(), 0.0).unwrap();
-        let Err(StepError::TooLarge { limit }) = OddEven::new(curve, 1.0e3, false) else { panic!("accepted") };
+        let Err(StepError::TooLarge { limit }) = OddEven::new(curve, 1.0e3, false) else {
+            panic!("accepted")
+        };
         // 3/8 · h / b with h = √(1 + k²)
-        assert_relative_eq!(limit, 0.375 * (1.0 + curve.k() * curve.k()).sqrt() / curve.beta(), max_relative = 1e-14);
+        assert_relative_eq!(
+            limit,
+            0.375 * (1.0 + curve.k() * curve.k()).sqrt() / curve.beta(),
+            max_relative = 1e-14
+        );
         assert_eq!(OddEven::new(curve, 0.0, false).unwrap_err(), StepError::NotPositive);
         assert!(matches!(OddEven::new(curve, 1e-9, false), Err(StepError::TooManyPoints { .. })));
     }
 
     #[test]
     fn the_largest_step_holds_and_a_larger_one_does_not() {
-        for cutter in [paper(), Cutter { c: -5.0, d1: 12.0, length: 20.0, ..paper() }, Cutter { s: 60.0, ..paper() }] {
+        for cutter in
+            [paper(), Cutter { c: -5.0, d1: 12.0, length: 20.0, ..paper() }, Cutter { s: 60.0, ..paper() }]
+        {
             let curve = LogCurve::new(cutter, 0.0).unwrap();
             let dl = largest_step(&curve, 5e-5, 0.2, false).unwrap();
             let deviation = |dl| polyline_deviation(&curve, OddEven::new(curve, dl, false).unwrap()).mm;

@@ -160,7 +160,13 @@ pub const KEYS: &[Key] = &[
     ),
     Key::table(
         "program",
-        &[Key::value("header"), Key::value("tool"), Key::value("spindle"), Key::value("tool_spindle"), Key::value("footer")],
+        &[
+            Key::value("header"),
+            Key::value("tool"),
+            Key::value("spindle"),
+            Key::value("tool_spindle"),
+            Key::value("footer"),
+        ],
     ),
 ];
 
@@ -244,7 +250,7 @@ impl Machine {
             },
         };
         let mut at = Reader { source, diagnostics: Diagnostics::new() };
-        let machine = at.machine(file, base);
+        let machine = at.machine(file, base.as_ref());
         at.diagnostics.into_result()?;
         // Where a value is missing, a diagnostic said so.
         machine.ok_or_else(Diagnostics::new)
@@ -275,9 +281,12 @@ impl Machine {
                     Kind::Rotary => "rotary",
                     Kind::Direction => "direction",
                 };
-                return Err(Diagnostic::error("axis-missing", format!("machine `{}` has no {what} axis {axis}", self.name))
-                    .hint("name it under [axes] in the machine file")
-                    .into());
+                return Err(Diagnostic::error(
+                    "axis-missing",
+                    format!("machine `{}` has no {what} axis {axis}", self.name),
+                )
+                .hint("name it under [axes] in the machine file")
+                .into());
             }
         }
         Ok(Machine { axes: *axes, ..self.clone() })
@@ -292,8 +301,9 @@ impl Machine {
 /// The diagnostic for a machine that is not built in.
 fn unknown_machine(name: &Spanned<String>, source: SourceId) -> Diagnostic {
     let names = BUILT_IN.iter().map(|(name, _)| *name);
-    let error = Diagnostic::error("machine-unknown", format!("there is no built-in machine `{}`", name.get_ref()))
-        .at(Span::new(source, name.span()), "not built in");
+    let error =
+        Diagnostic::error("machine-unknown", format!("there is no built-in machine `{}`", name.get_ref()))
+            .at(Span::new(source, name.span()), "not built in");
     match nearest(name.get_ref(), names.clone()) {
         Some(meant) => error.hint(format!("did you mean `{meant}`?")),
         None => error.hint(format!("built in are {}", names.collect::<Vec<_>>().join(", "))),
@@ -313,8 +323,9 @@ impl Reader {
 
     fn missing<T>(&mut self, key: &str) -> Option<T> {
         self.diagnostics.push(
-            Diagnostic::error("key-missing", format!("the machine file has no `{key}`"))
-                .hint("start with `extends = \"sinumerik\"` (or heidenhain, mazak) and state only what differs"),
+            Diagnostic::error("key-missing", format!("the machine file has no `{key}`")).hint(
+                "start with `extends = \"sinumerik\"` (or heidenhain, mazak) and state only what differs",
+            ),
         );
         None
     }
@@ -323,15 +334,15 @@ impl Reader {
         own.or(base).or_else(|| self.missing(key))
     }
 
-    fn machine(&mut self, file: File, base: Option<Machine>) -> Option<Machine> {
-        let base = base.as_ref();
+    fn machine(&mut self, file: File, base: Option<&Machine>) -> Option<Machine> {
         let dialect = match &file.dialect {
             None => self.or(None, base.map(|b| b.dialect), "dialect"),
             Some(name) => {
                 let found = dialect::find(name.get_ref());
                 if found.is_none() {
                     let names: Vec<&str> = dialect::DIALECTS.iter().map(|d| d.name).collect();
-                    let message = format!("`{}` is not a dialect; they are {}", name.get_ref(), names.join(", "));
+                    let message =
+                        format!("`{}` is not a dialect; they are {}", name.get_ref(), names.join(", "));
                     self.error("dialect-unknown", message, name.span());
                 }
                 found
@@ -343,8 +354,12 @@ impl Reader {
             Some(name) => {
                 let found = dialect.motion(name.get_ref());
                 if found.is_none() {
-                    let message =
-                        format!("`{}` is not a motion of {}; they are auto, {}", name.get_ref(), dialect.name, dialect.motion_names());
+                    let message = format!(
+                        "`{}` is not a motion of {}; they are auto, {}",
+                        name.get_ref(),
+                        dialect.name,
+                        dialect.motion_names()
+                    );
                     self.error("motion-unknown", message, name.span());
                 }
                 found
@@ -360,11 +375,31 @@ impl Reader {
         let digits = self.digits(&file.digits.unwrap_or_default(), base.map(|b| b.digits));
         let text_file = file.text.unwrap_or_default();
         let text = Text {
-            point_always: self.or(text_file.point_always, base.map(|b| b.text.point_always), "text.point_always")?,
-            sign_always: self.or(text_file.sign_always, base.map(|b| b.text.sign_always), "text.sign_always")?,
-            number_start: self.or(text_file.number_start, base.map(|b| b.text.number_start), "text.number_start")?,
-            number_step: self.or(text_file.number_step, base.map(|b| b.text.number_step), "text.number_step")?,
-            extension: self.or(text_file.extension, base.map(|b| b.text.extension.clone()), "text.extension")?,
+            point_always: self.or(
+                text_file.point_always,
+                base.map(|b| b.text.point_always),
+                "text.point_always",
+            )?,
+            sign_always: self.or(
+                text_file.sign_always,
+                base.map(|b| b.text.sign_always),
+                "text.sign_always",
+            )?,
+            number_start: self.or(
+                text_file.number_start,
+                base.map(|b| b.text.number_start),
+                "text.number_start",
+            )?,
+            number_step: self.or(
+                text_file.number_step,
+                base.map(|b| b.text.number_step),
+                "text.number_step",
+            )?,
+            extension: self.or(
+                text_file.extension,
+                base.map(|b| b.text.extension.clone()),
+                "text.extension",
+            )?,
         };
         let spline = self.spline(file.spline.unwrap_or_default(), base)?;
         let program = file.program.unwrap_or_default();
@@ -385,7 +420,11 @@ impl Reader {
             about: self.or(file.about, base.map(|b| b.about.clone()), "about")?,
             dialect,
             motion,
-            tolerance: self.or(file.tolerance.map(Spanned::into_inner), base.map(|b| b.tolerance), "tolerance")?,
+            tolerance: self.or(
+                file.tolerance.map(Spanned::into_inner),
+                base.map(|b| b.tolerance),
+                "tolerance",
+            )?,
             axes: axes?,
             wraps: self.or(axes_file.wraps, base.map(|b| b.wraps), "axes.wraps")?,
             digits: digits?,
@@ -405,7 +444,9 @@ impl Reader {
 
     fn axes(&mut self, file: &AxesFile, base: Option<&Machine>) -> Option<Axes> {
         let mut list = Vec::new();
-        for (own, kind, key) in [(&file.linear, Kind::Linear, "axes.linear"), (&file.rotary, Kind::Rotary, "axes.rotary")] {
+        for (own, kind, key) in
+            [(&file.linear, Kind::Linear, "axes.linear"), (&file.rotary, Kind::Rotary, "axes.rotary")]
+        {
             match own {
                 Some(names) => {
                     for name in names.get_ref() {
@@ -428,7 +469,8 @@ impl Reader {
 
     fn digits(&mut self, file: &DigitsFile, base: Option<Digits>) -> Option<Digits> {
         // Nine decimals of a position up to 10⁵ are as many as a float holds.
-        for digits in [&file.linear, &file.rotary, &file.feed, &file.knot, &file.weight].into_iter().flatten() {
+        for digits in [&file.linear, &file.rotary, &file.feed, &file.knot, &file.weight].into_iter().flatten()
+        {
             if 9 < *digits.get_ref() {
                 self.error("digits-range", "at most 9 decimals", digits.span());
             }
@@ -468,14 +510,26 @@ impl Reader {
         }
         Some(Spline {
             axes,
-            poly_degree: self.or(file.poly_degree.map(Spanned::into_inner), base.map(|b| b.poly_degree), "spline.poly_degree")?,
-            shared_parameter: self.or(file.shared_parameter, base.map(|b| b.shared_parameter), "spline.shared_parameter")?,
+            poly_degree: self.or(
+                file.poly_degree.map(Spanned::into_inner),
+                base.map(|b| b.poly_degree),
+                "spline.poly_degree",
+            )?,
+            shared_parameter: self.or(
+                file.shared_parameter,
+                base.map(|b| b.shared_parameter),
+                "spline.shared_parameter",
+            )?,
             bspline_min_blocks: self.or(
                 file.bspline_min_blocks.map(Spanned::into_inner),
                 base.map(|b| b.bspline_min_blocks),
                 "spline.bspline_min_blocks",
             )?,
-            begin: self.or(file.begin.map(Spanned::into_inner), base.map(|b| b.begin.clone()), "spline.begin")?,
+            begin: self.or(
+                file.begin.map(Spanned::into_inner),
+                base.map(|b| b.begin.clone()),
+                "spline.begin",
+            )?,
             end: self.or(file.end.map(Spanned::into_inner), base.map(|b| b.end.clone()), "spline.end")?,
         })
     }
@@ -493,7 +547,10 @@ impl Reader {
             let template = Template(line.get_ref().clone());
             let strange = template.variables().find(|v| !variables.contains(v)).map(str::to_owned);
             if let Some(strange) = strange {
-                let message = format!("`{{{strange}}}` cannot be filled in here; only {{{}}} can", variables.join("}, {"));
+                let message = format!(
+                    "`{{{strange}}}` cannot be filled in here; only {{{}}} can",
+                    variables.join("}, {")
+                );
                 self.error("template-variable", message, line.span());
             }
             if line.get_ref().is_empty() || !line.get_ref().bytes().all(|b| (32..127).contains(&b)) {
@@ -526,10 +583,15 @@ mod tests {
 
     #[test]
     fn wrong_values_are_reported_together() {
-        let text = "extends = \"sinumerik\"\nmotion = \"spl\"\n[digits]\nlinear = 12\n[spline]\npoly_degree = 9\n";
-        let ids: Vec<&str> = Machine::parse(text, SourceId::INPUT).unwrap_err().0.iter().map(|d| d.id).collect();
+        let text =
+            "extends = \"sinumerik\"\nmotion = \"spl\"\n[digits]\nlinear = 12\n[spline]\npoly_degree = 9\n";
+        let ids: Vec<&str> =
+            Machine::parse(text, SourceId::INPUT).unwrap_err().0.iter().map(|d| d.id).collect();
         assert_eq!(ids, ["motion-unknown", "digits-range", "degree-range"]);
-        assert_eq!(Machine::parse("extends = \"fanuk\"", SourceId::INPUT).unwrap_err().0[0].id, "machine-unknown");
+        assert_eq!(
+            Machine::parse("extends = \"fanuk\"", SourceId::INPUT).unwrap_err().0[0].id,
+            "machine-unknown"
+        );
         assert!(Machine::parse("", SourceId::INPUT).unwrap_err().has_errors());
     }
 }

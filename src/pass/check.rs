@@ -21,7 +21,7 @@ impl Legal {
 const SMOOTH_JOINT: f64 = 0.1;
 
 /// The greatest coordinate, mm or degrees, of the narrowest control (Heidenhain: ±99 999.9999).
-const GREATEST: f64 = 99_999.9999;
+const GREATEST: f64 = 99_999.999_9;
 
 /// Checks a program against a machine.
 ///
@@ -29,12 +29,8 @@ const GREATEST: f64 = 99_999.9999;
 /// The name is not one for this control; a coordinate is out of range; a rotary axis would wrap.
 pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Diagnostics> {
     let mut found = Diagnostics::new();
-    let (rule, allowed) = machine.dialect.naming;
-    if !allowed(&decimals.program.name) {
-        found.push(
-            Diagnostic::error("name-not-allowed", format!("`{}` cannot be a program's name on this control", decimals.program.name))
-                .hint(format!("a name is {rule}")),
-        );
+    if let Some(diagnostic) = name(&decimals.program.name, machine) {
+        found.push(diagnostic);
     }
     let mut reach = Reach::new();
     let mut worst_joint = 0.0f64;
@@ -83,6 +79,15 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
     }
     let warnings = found.into_result()?;
     Ok(Warned { value: Legal(decimals), warnings })
+}
+
+/// What is wrong with a program's name on this control.
+pub fn name(name: &str, machine: &Machine) -> Option<Diagnostic> {
+    let (rule, allowed) = machine.dialect.naming;
+    (!allowed(name)).then(|| {
+        Diagnostic::error("name-not-allowed", format!("`{name}` cannot be a program's name on this control"))
+            .hint(format!("a name is {rule}"))
+    })
 }
 
 /// The least and the greatest of every axis.
@@ -138,7 +143,10 @@ impl Reach {
             let (low, high) = self.0[i];
             if low < -GREATEST || GREATEST < high {
                 let far = if low < -GREATEST { low } else { high };
-                found.push(Diagnostic::error("position-range", format!("{axis} goes to {far}, beyond ±99999.9999")));
+                found.push(Diagnostic::error(
+                    "position-range",
+                    format!("{axis} goes to {far}, beyond ±99999.9999"),
+                ));
             }
             if *kind == Kind::Rotary && (low < 0.0 || 360.0 < high) {
                 let range = format!("{axis} runs from {low:.3} to {high:.3} degrees, outside 0 to 360");
@@ -168,10 +176,15 @@ pub fn moving(curve: &Written) -> Vec<usize> {
         moved
     };
     let moved = match curve {
-        Written::Lines(line) | Written::Through(_, line) => differ(&line.start, &mut line.units.chunks_exact(line.stride)),
-        Written::Nurbs(nurbs) => differ(&nurbs.points[0], &mut nurbs.points.iter().map(<[i64; MAX_AXES]>::as_slice)),
+        Written::Lines(line) | Written::Through(_, line) => {
+            differ(&line.start, &mut line.units.chunks_exact(line.stride))
+        }
+        Written::Nurbs(nurbs) => {
+            differ(&nurbs.points[0], &mut nurbs.points.iter().map(<[i64; MAX_AXES]>::as_slice))
+        }
         Written::Polynomial(polynomial) => {
-            let mut moved = differ(&polynomial.start, &mut polynomial.blocks.iter().map(|block| block.end.as_slice()));
+            let mut moved =
+                differ(&polynomial.start, &mut polynomial.blocks.iter().map(|block| block.end.as_slice()));
             for block in &polynomial.blocks {
                 for (moved, coefficients) in moved.iter_mut().zip(&block.coefficients) {
                     *moved |= coefficients.iter().any(|a| !a.is_zero());
@@ -199,7 +212,8 @@ fn joint_angle(decimals: &Decimals, curve: &Written) -> f64 {
                 // 2 asin(|u − v|/2) keeps small angles exact; atan of the half-angle's sine and cosine is the same.
                 let between: Position = std::array::from_fn(|i| after[i] / b - before[i] / a);
                 let half = 0.5 * dot(&between, &between).sqrt();
-                let angle = 2.0 * crate::geom::elementary::atan(half / (1.0 - half * half).max(1.0e-300).sqrt());
+                let angle =
+                    2.0 * crate::geom::elementary::atan(half / (1.0 - half * half).max(1.0e-300).sqrt());
                 worst = worst.max(angle * DEGREES);
             }
         }

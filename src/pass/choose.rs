@@ -13,7 +13,11 @@ use crate::units::Axis;
 ///
 /// # Errors
 /// No motion of the machine can hold the tolerance.
-pub fn choose(intent: &Intent, machine: &Machine, tolerance: f64) -> Result<Warned<&'static Motion>, Diagnostics> {
+pub fn choose(
+    intent: &Intent,
+    machine: &Machine,
+    tolerance: f64,
+) -> Result<Warned<&'static Motion>, Diagnostics> {
     let mut warnings = Diagnostics::new();
     let blocked = machine.axes_without_spline(&moving_axes(intent));
     let straight = paths(intent).all(|curve| match curve {

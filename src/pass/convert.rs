@@ -30,7 +30,9 @@ pub fn convert(
                     .map_err(|message| Diagnostic::refusal("form-out-of-reach", message).at(span, ""))?;
                 Step::Cut(Cut { feed, role: Role::Path, curve })
             }
-            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => step,
+            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
+                step
+            }
         };
         steps.push(Located { step, span });
     }
@@ -121,8 +123,13 @@ fn spline(pieces: Vec<Bezier>, axes: &Axes, machine: &Machine) -> Result<Nurbs, 
     }
     // Sums of decimals are not decimals to the last bit; the grid makes them so.
     let knots: Option<Vec<f64>> = spline.knots().iter().map(|t| on_grid(*t)).collect();
-    Nurbs::new(3, knots.ok_or("the spline is too long for its knots")?, spline.points().to_vec(), spline.weights().to_vec())
-        .map_err(|error| error.to_string())
+    Nurbs::new(
+        3,
+        knots.ok_or("the spline is too long for its knots")?,
+        spline.points().to_vec(),
+        spline.weights().to_vec(),
+    )
+    .map_err(|error| error.to_string())
 }
 
 /// About the length of the linear axes' path, mm: that of the control polygon.
@@ -131,6 +138,12 @@ fn path_length(piece: &Bezier, axes: &Axes) -> f64 {
     piece
         .control_points()
         .windows(2)
-        .map(|pair| linear.iter().map(|i| (pair[1][*i] - pair[0][*i]) * (pair[1][*i] - pair[0][*i])).sum::<f64>().sqrt())
+        .map(|pair| {
+            linear
+                .iter()
+                .map(|i| (pair[1][*i] - pair[0][*i]) * (pair[1][*i] - pair[0][*i]))
+                .sum::<f64>()
+                .sqrt()
+        })
         .sum()
 }

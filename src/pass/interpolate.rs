@@ -25,10 +25,13 @@ pub fn interpolate(
     for located in &intent.program.steps {
         let step = match &located.step {
             Step::Cut(Cut { feed, role, curve: Curve::Logarithmic(log) }) => {
-                let curve = follow(log, form, machine, tolerance, asked).map_err(|error| out_of_reach(error, located.span))?;
+                let curve = follow(log, form, machine, tolerance, asked)
+                    .map_err(|error| out_of_reach(error, located.span))?;
                 Step::Cut(Cut { feed: *feed, role: *role, curve })
             }
-            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => step.clone(),
+            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
+                step.clone()
+            }
         };
         steps.push(Located { step, span: located.span });
     }
@@ -36,7 +39,9 @@ pub fn interpolate(
 }
 
 fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
-    Diagnostic::refusal("tolerance-out-of-reach", error.to_string()).at(span, "").hint("allow a larger tolerance")
+    Diagnostic::refusal("tolerance-out-of-reach", error.to_string())
+        .at(span, "")
+        .hint("allow a larger tolerance")
 }
 
 /// One curve as lines, pieces or points.
@@ -48,19 +53,23 @@ fn follow(
     asked: f64,
 ) -> Result<Curve, FitError> {
     match (log.method, form) {
-        (_, Form::Through(kind)) => Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter()))),
+        (_, Form::Through(kind)) => {
+            Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter())))
+        }
         (Method::OddEven, Form::Lines | Form::Polynomial { .. } | Form::Nurbs) => {
             Ok(Curve::Lines(polyline(log, steps(log).map_err(|_| FitError { tolerance })?)))
         }
         (Method::Auto | Method::Direct, Form::Lines) => {
             let xs = fit::chords(&log.curve, tolerance)?;
             Ok(Curve::Lines(polyline(log, xs.into_iter().skip(1).map(|x| (x, log.curve.angle(x))))))
-        },
+        }
         (Method::Auto | Method::Direct, Form::Polynomial { closing }) => {
             let degree = if closing { 3 } else { machine.spline.poly_degree };
             pieces(log, degree, machine.spline.shared_parameter, tolerance)
         }
-        (Method::Auto | Method::Direct, Form::Nurbs) => pieces(log, 3, machine.spline.shared_parameter, tolerance),
+        (Method::Auto | Method::Direct, Form::Nurbs) => {
+            pieces(log, 3, machine.spline.shared_parameter, tolerance)
+        }
     }
 }
 

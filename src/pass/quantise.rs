@@ -25,8 +25,8 @@ use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    COEFFICIENTS, Curve, Cut, Decimals, Located, PolynomialBlock, Polyline, Program, Role, Step, Units, Written,
-    WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role, Step, Units,
+    Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
 };
 use crate::machine::Machine;
 use crate::units::{DEGREES, Kind, MAX_AXES};
@@ -65,13 +65,16 @@ pub fn quantise(
         let share = if rotary && 0.0 < radius { 0.1 * tolerance * DEGREES / radius } else { 0.1 * tolerance };
         let mut d = digits[i];
         // Four coefficients, PL = 1.
-        while d < MAX_COEFFICIENT_DIGITS && share < 0.5 * COEFFICIENTS as f64 / crate::decimal::power_of_ten(d) as f64 {
+        while d < MAX_COEFFICIENT_DIGITS
+            && share < 0.5 * COEFFICIENTS as f64 / crate::decimal::power_of_ten(d) as f64
+        {
             d += 1;
         }
         d
     });
     let closing = form == (Form::Polynomial { closing: true });
-    let mut quantiser = Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], closing };
+    let mut quantiser =
+        Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], closing };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
         let step = quantiser.step(step).map_err(|Unwritable| {
@@ -80,7 +83,9 @@ pub fn quantise(
         if let Step::Cut(Cut { feed: Some(feed), .. }) = &step
             && feed.is_zero()
         {
-            return Err(Diagnostic::error("feed-rounds-to-zero", "the feed rounds to zero").at(span, "").into());
+            return Err(Diagnostic::error("feed-rounds-to-zero", "the feed rounds to zero")
+                .at(span, "")
+                .into());
         }
         steps.push(Located { step, span });
     }
@@ -205,17 +210,22 @@ impl Quantiser<'_> {
         let cubic = piece.raised_to(3);
         let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|i| cubic.points[i][axis]);
         let digits = self.digits[axis];
-        let (delta_s, delta_e) =
-            (crate::decimal::units_to_f64(start, digits) - p0, crate::decimal::units_to_f64(end, digits) - p3);
+        let (delta_s, delta_e) = (
+            crate::decimal::units_to_f64(start, digits) - p0,
+            crate::decimal::units_to_f64(end, digits) - p3,
+        );
         let k1 = 3.0 * (p2 - p3);
         let k2 = 3.0 * (p1 - 2.0 * p2 + p3) + 3.0 * (delta_s - delta_e);
         let gap = Decimal::new(start, digits).minus(Decimal::new(end, digits)).ok_or(Unwritable)?;
         // e from 0 while q = 10^(e−8) still divides the positions' last decimal.
         for e in 0..=CLOSING_DIGITS.checked_sub(digits).ok_or(Unwritable)? {
             let q_digits = CLOSING_DIGITS - e;
-            let (Some(k1), Some(k2)) = (Decimal::round(k1, q_digits), Decimal::round(k2, q_digits)) else { continue };
+            let (Some(k1), Some(k2)) = (Decimal::round(k1, q_digits), Decimal::round(k2, q_digits)) else {
+                continue;
+            };
             let Some(k3) = gap.minus(k1).and_then(|rest| rest.minus(k2)) else { continue };
-            let fits = |k: Decimal| k.units(q_digits).is_some_and(|units| units.unsigned_abs() < 1_000_000_000);
+            let fits =
+                |k: Decimal| k.units(q_digits).is_some_and(|units| units.unsigned_abs() < 1_000_000_000);
             if fits(k1) && fits(k2) && fits(k3) {
                 let a2 = k3.times(3).and_then(|k| k.plus(k2)).ok_or(Unwritable)?;
                 let a3 = k3.times(-1).ok_or(Unwritable)?;
@@ -245,6 +255,13 @@ impl Quantiser<'_> {
         };
         let end = points[points.len() - 1];
         self.arrive(&end);
-        Ok(Written::Nurbs(WrittenNurbs { degree: nurbs.degree(), knots, knot_digits, points, weights, lines: Vec::new() }))
+        Ok(Written::Nurbs(WrittenNurbs {
+            degree: nurbs.degree(),
+            knots,
+            knot_digits,
+            points,
+            weights,
+            lines: Vec::new(),
+        }))
     }
 }

@@ -74,7 +74,12 @@ pub fn through_points(log: &Logarithmic, tolerance: f64) -> Result<Vec<(f64, f64
         Method::OddEven => {
             let all: Vec<(f64, f64)> = steps(log).map_err(|_| FitError { tolerance })?.collect();
             let last = all.len() - 1;
-            Ok(all.into_iter().enumerate().filter(|(i, _)| i % 2 == 1 || *i == last).map(|(_, point)| point).collect())
+            Ok(all
+                .into_iter()
+                .enumerate()
+                .filter(|(i, _)| i % 2 == 1 || *i == last)
+                .map(|(_, point)| point)
+                .collect())
         }
         Method::Auto | Method::Direct => {
             let xs = fit::chords(&log.curve, tolerance)?;

@@ -1,1 +1,98 @@
-fn main(){}
+//! Benchmarks: `cargo bench`, or `cargo bench -- NAME` for one of them.
+//!
+//! The machine is shared and noisy: compare ratios.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use splinepost::geom::fit;
+use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
+use splinepost::geom::oddeven::OddEven;
+use splinepost::machine::Machine;
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::{Options, compile, front};
+use std::hint::black_box;
+
+const PAPER: Cutter =
+    Cutter { d1: 10.0, s: 30.0, c: 5.0, r: 8.0, length: 30.0, hand: Hand::Right, law: Law::ConstantHelix };
+
+fn curve(cutter: Cutter) -> LogCurve {
+    LogCurve::new(cutter, 0.0).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Points a second: aim 20 million.
+fn odd_even(c: &mut Criterion) {
+    let long = curve(Cutter { length: 200.0, ..PAPER });
+    let steps = || OddEven::new(long, 0.001, false).unwrap_or_else(|error| panic!("{error}"));
+    let count = steps().count();
+    let mut group = c.benchmark_group("odd-even");
+    group.throughput(Throughput::Elements(count as u64));
+    group.bench_function("points", |b| b.iter(|| steps().fold(0.0, |sum, (x, a)| sum + x + black_box(a))));
+    group.finish();
+}
+
+/// A cutter's direct fit, at tolerances from easy to hard.
+fn direct(c: &mut Criterion) {
+    let mut group = c.benchmark_group("direct");
+    for tolerance in [1e-3, 1e-6, 1e-9] {
+        let curve = curve(Cutter { length: 200.0, ..PAPER });
+        group.bench_function(format!("along-itself/{tolerance:e}"), |b| {
+            b.iter(|| fit::along_itself(black_box(&curve), tolerance));
+        });
+        group.bench_function(format!("quintic/{tolerance:e}"), |b| {
+            b.iter(|| fit::linear_in_x(black_box(&curve), 5, tolerance));
+        });
+    }
+    group.finish();
+}
+
+fn sources(length: f64, flutes: usize, dl: f64) -> Sources {
+    let text = format!(
+        "name = \"BENCH\"\n[cutter]\nD1 = 10\nS = 30\nC = 5\nr = 8\nlength = {length}\nflutes = {flutes}\n\
+         [interpolation]\ndl = {dl}\n[process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\n"
+    );
+    Sources::new(Source::new("bench", text))
+}
+
+fn text(sources: &Sources, machine: &str, motion: Option<&str>) -> String {
+    let machine = Machine::built_in(machine).unwrap_or_else(|| panic!("no machine {machine}"));
+    let options = Options { motion: motion.and_then(|m| machine.dialect.motion(m)), ..Options::default() };
+    match compile(sources, &front::LANGUAGES[0], &machine, &options) {
+        Ok(output) => output.text,
+        Err(failure) => panic!("{:?}", failure.diagnostics),
+    }
+}
+
+/// The whole way for the paper's cutter.
+fn whole(c: &mut Criterion) {
+    let mut group = c.benchmark_group("compile");
+    let sources = sources(30.0, 4, 0.2);
+    for (machine, motion) in
+        [("sinumerik", "poly"), ("sinumerik", "bspline"), ("sinumerik", "linear"), ("heidenhain", "spl")]
+    {
+        group.bench_function(format!("{machine}/{motion}"), |b| {
+            b.iter(|| text(black_box(&sources), machine, Some(motion)))
+        });
+    }
+    group.finish();
+}
+
+/// A million points as lines, written and proved: aim 100 MB/s of text.
+fn million(c: &mut Criterion) {
+    let mut group = c.benchmark_group("million");
+    group.sample_size(10);
+    let sources = sources(200.0, 50, 0.01);
+    for machine in ["sinumerik", "heidenhain", "mazak"] {
+        let size = text(&sources, machine, Some("linear")).len();
+        group.throughput(Throughput::Bytes(size as u64));
+        group.bench_function(machine, |b| b.iter(|| text(black_box(&sources), machine, Some("linear"))));
+    }
+    let sinumerik = Machine::built_in("sinumerik").unwrap_or_else(|| panic!("no machine"));
+    let program = text(&sources, "sinumerik", Some("linear"));
+    group.throughput(Throughput::Bytes(program.len() as u64));
+    group.bench_function("sinumerik/read", |b| {
+        b.iter(|| (sinumerik.dialect.read)(black_box(&program), SourceId::PROGRAM, &sinumerik).is_ok());
+    });
+    group.finish();
+}
+
+criterion_group!(benches, odd_even, direct, whole, million);
+criterion_main!(benches);

@@ -63,10 +63,21 @@ pub const DIALECT: Dialect = Dialect {
         Motion { name: "poly", form: Form::Polynomial { closing: false }, about: "POLY: polynomial blocks" },
         Motion { name: "bspline", form: Form::Nurbs, about: "BSPLINE: control points and knot distances" },
         Motion { name: "linear", form: Form::Lines, about: "G1" },
-        Motion { name: "aspline", form: Form::Through(ThroughKind::Akima), about: "ASPLINE: Akima spline through points" },
-        Motion { name: "cspline", form: Form::Through(ThroughKind::Cubic), about: "CSPLINE: cubic spline through points" },
+        Motion {
+            name: "aspline",
+            form: Form::Through(ThroughKind::Akima),
+            about: "ASPLINE: Akima spline through points",
+        },
+        Motion {
+            name: "cspline",
+            form: Form::Through(ThroughKind::Cubic),
+            about: "CSPLINE: cubic spline through points",
+        },
     ],
-    naming: ("1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter", is_name),
+    naming: (
+        "1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter",
+        is_name,
+    ),
     write: write::write,
     read: read::read,
 };

@@ -2,18 +2,20 @@
 //!
 //! A word that is not understood is an error at its place.
 
-use crate::decimal::{Decimal, read_decimal};
+use crate::decimal::{Decimal, power_of_ten, read_decimal};
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Frame, Lines, Met, Numbering, block_number};
-use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::ir::{
-    COEFFICIENTS, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    COEFFICIENTS, Decimals, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
+    WrittenPolynomial,
 };
 use crate::machine::Machine;
 use crate::pass::check::moving;
 use crate::source::{SourceId, Span};
 use crate::units::{Kind, MAX_AXES};
+use crate::verify::to_nurbs;
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while, take_while1};
 use nom::character::complete::{char, space0};
@@ -66,7 +68,9 @@ fn number(input: &str) -> IResult<&str, Decimal> {
     if !rest.starts_with("EX") {
         return Ok((rest, value));
     }
-    let (rest, exponent) = preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit())))).parse(rest)?;
+    let (rest, exponent) =
+        preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
+            .parse(rest)?;
     let exponent: i32 = exponent.parse().map_err(|_| failed())?;
     scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
 }
@@ -138,7 +142,8 @@ enum Motion {
 
 /// Codes that state what the IR assumes anyway.
 const STATE_CODES: [&str; 17] = [
-    "G17", "G40", "G54", "G55", "G56", "G57", "G500", "G60", "G64", "G601", "G642", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF",
+    "G17", "G40", "G54", "G55", "G56", "G57", "G500", "G60", "G64", "G601", "G642", "G71", "G90", "G94",
+    "SOFT", "COMPOF", "TRAFOOF",
 ];
 
 /// What one block says.
@@ -177,6 +182,8 @@ struct Reader<'m> {
     motion: Motion,
     degree: usize,
     upath: bool,
+    /// The axes that SPLINEPATH named last.
+    splinepath: Vec<usize>,
     run: Option<Run>,
 }
 
@@ -189,6 +196,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         motion: Motion::None,
         degree: 3,
         upath: false,
+        splinepath: Vec::new(),
         run: None,
     };
     for line in Lines::new(text) {
@@ -209,7 +217,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
         let span = Span::new(source, line.range());
         // A block of one axis letter and a digit is a move; only others can be lines of the frame.
-        let is_move = frame.header_complete() && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
+        let is_move = frame.header_complete()
+            && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
         if !is_move || !reader.is_cutting() {
             let steps_before = reader.run.is_some();
             if steps_before && frame.may_begin(body) {
@@ -221,6 +230,9 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
         if let Some(comment) = body.strip_prefix(';') {
             reader.flush();
+            // A section starts: what its curves need must be said in it, so that it can be restarted.
+            reader.upath = false;
+            reader.splinepath.clear();
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
@@ -292,10 +304,18 @@ impl Reader<'_> {
             }
             Word::Polynomial(name, values) => {
                 let Some(axis) = self.assembler.axis(name) else {
-                    return self.assembler.error("axis-unknown", format!("{name} is not an axis of this machine"), range);
+                    return self.assembler.error(
+                        "axis-unknown",
+                        format!("{name} is not an axis of this machine"),
+                        range,
+                    );
                 };
                 if COEFFICIENTS + 1 < values.len() {
-                    return self.assembler.error("degree-too-high", "a polynomial has an end and at most four coefficients", range);
+                    return self.assembler.error(
+                        "degree-too-high",
+                        "a polynomial has an end and at most four coefficients",
+                        range,
+                    );
                 }
                 if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
                     self.name_axis(block, axis, units, range);
@@ -306,14 +326,21 @@ impl Reader<'_> {
             Word::Call("SPLINEPATH", arguments) => {
                 let mut parts = arguments.split(',').map(str::trim);
                 let first = parts.next() == Some("1");
-                if !first || !parts.all(|axis| self.assembler.axis(axis).is_some()) {
-                    self.assembler.error("splinepath", "SPLINEPATH takes 1 and axes of this machine", range);
+                let axes: Option<Vec<usize>> = parts.map(|axis| self.assembler.axis(axis)).collect();
+                match axes.filter(|_| first) {
+                    Some(axes) => self.splinepath = axes,
+                    None => self.assembler.error(
+                        "splinepath",
+                        "SPLINEPATH takes 1 and axes of this machine",
+                        range,
+                    ),
                 }
             }
             Word::Call("FGROUP", arguments) => {
                 // Feed and synchronisation are those of the geometry axes; another group means another path.
                 let axes = self.assembler.machine.axes;
-                let linear = |name: &str| self.assembler.axis(name).is_some_and(|i| axes.kind(i) == Kind::Linear);
+                let linear =
+                    |name: &str| self.assembler.axis(name).is_some_and(|i| axes.kind(i) == Kind::Linear);
                 if !arguments.trim().is_empty() && !arguments.split(',').map(str::trim).all(linear) {
                     self.assembler.error("fgroup", "only linear axes are read in FGROUP", range);
                 }
@@ -411,7 +438,11 @@ impl Reader<'_> {
     fn moved(&mut self, block: &Block, line: u32, span: Span) {
         let whole = || span.start as usize..span.end as usize;
         if block.has_polynomial && self.motion != Motion::Poly {
-            return self.assembler.error("po-without-poly", "PO[…] stands in a block that is not POLY", whole());
+            return self.assembler.error(
+                "po-without-poly",
+                "PO[…] stands in a block that is not POLY",
+                whole(),
+            );
         }
         let spline = matches!(self.motion, Motion::Bspline);
         if (block.pl.is_some() && !spline && self.motion != Motion::Poly) || (block.pw.is_some() && !spline) {
@@ -424,7 +455,9 @@ impl Reader<'_> {
             return;
         }
         match self.motion {
-            Motion::None => self.assembler.error("motion-missing", "a move before any G0, G1, POLY or spline", whole()),
+            Motion::None => {
+                self.assembler.error("motion-missing", "a move before any G0, G1, POLY or spline", whole());
+            }
             Motion::Rapid => self.assembler.rapid(block.named(), span),
             Motion::Line => self.assembler.line(block.named(), line, span),
             Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
@@ -457,7 +490,11 @@ impl Reader<'_> {
         if self.motion == Motion::Poly {
             let pl = block.pl.unwrap_or(Decimal::new(1, 0));
             if pl.compare(Decimal::ZERO).is_le() {
-                return self.assembler.error("pl-range", "PL of a POLY block must be greater than zero", span.start as usize..span.end as usize);
+                return self.assembler.error(
+                    "pl-range",
+                    "PL of a POLY block must be greater than zero",
+                    span.start as usize..span.end as usize,
+                );
             }
             run.blocks.push(PolynomialBlock { pl, end: target, coefficients: block.coefficients, line });
         } else {
@@ -472,22 +509,25 @@ impl Reader<'_> {
     fn flush(&mut self) {
         let Some(run) = self.run.take() else { return };
         let span = run.span;
-        let end = run.points.last().copied().or(run.blocks.last().map(|block| block.end)).unwrap_or(run.start);
+        let end =
+            run.points.last().copied().or(run.blocks.last().map(|block| block.end)).unwrap_or(run.start);
         let curve = match run.motion {
-            Motion::Poly => Some(Written::Polynomial(WrittenPolynomial { start: run.start, blocks: run.blocks })),
+            Motion::Poly => {
+                Some(Written::Polynomial(WrittenPolynomial { start: run.start, blocks: run.blocks }))
+            }
             Motion::Bspline => self.bspline(run).map(Written::Nurbs),
             Motion::Through(kind) => {
                 let stride = self.assembler.machine.axes.count();
                 let units = run.points.iter().flat_map(|point| point[..stride].to_vec()).collect();
-                Some(Written::Through(kind, WrittenPoints { start: run.start, stride, units, lines: run.lines }))
+                Some(Written::Through(
+                    kind,
+                    WrittenPoints { start: run.start, stride, units, lines: run.lines },
+                ))
             }
             Motion::None | Motion::Rapid | Motion::Line => None,
         };
         let Some(curve) = curve else { return };
-        if !self.upath && self.depends_on_upath(&curve) {
-            let diagnostic = Diagnostic::error("arc-length", "without UPATH the rotary axes follow the arc length here, which is another curve");
-            self.assembler.diagnostics.push(diagnostic.at(span, "").hint("write UPATH before the spline"));
-        }
+        self.path_reference(&curve, span);
         self.assembler.curve(curve, &end, span);
     }
 
@@ -499,7 +539,12 @@ impl Reader<'_> {
         lines.insert(0, lines.first().copied().unwrap_or(0));
         // A first block that repeats the first point has an empty support; its weight is that of the point.
         let mut first_weight = None;
-        if points.len() > degree + 2 && points[0] == points[1] && pl[0].is_zero() && pl[1].is_zero() && degree == 3 {
+        if points.len() > degree + 2
+            && points[0] == points[1]
+            && pl[0].is_zero()
+            && pl[1].is_zero()
+            && degree == 3
+        {
             points.remove(0);
             lines.remove(0);
             pl.remove(0);
@@ -507,10 +552,15 @@ impl Reader<'_> {
         }
         let n = points.len();
         if n <= degree {
-            self.assembler.error("spline-too-short", format!("a B-spline of degree {degree} needs at least {degree} blocks"), whole);
+            self.assembler.error(
+                "spline-too-short",
+                format!("a B-spline of degree {degree} needs at least {degree} blocks"),
+                whole,
+            );
             return None;
         }
-        let knot_digits = pl.iter().map(|d| d.digits()).max().unwrap_or(0).max(self.assembler.machine.digits.knot);
+        let knot_digits =
+            pl.iter().map(|d| d.digits()).max().unwrap_or(0).max(self.assembler.machine.digits.knot);
         let mut knots = vec![0i64; 3];
         if run.missing_pl {
             if pl.iter().any(|d| !d.is_zero()) {
@@ -518,18 +568,26 @@ impl Reader<'_> {
                 return None;
             }
             self.assembler.diagnostics.push(
-                Diagnostic::warning("knots-unknown", "without PL the control chooses the knots; uniform ones are taken here").at(run.span, ""),
+                Diagnostic::warning(
+                    "knots-unknown",
+                    "without PL the control chooses the knots; uniform ones are taken here",
+                )
+                .at(run.span, ""),
             );
             let spans = n - degree;
             knots = vec![0; degree + 1];
-            knots.extend((1..spans).map(|i| i as i64 * crate::decimal::power_of_ten(knot_digits)));
-            knots.extend(std::iter::repeat_n(spans as i64 * crate::decimal::power_of_ten(knot_digits), degree + 1));
+            knots.extend((1..spans).map(|i| i as i64 * power_of_ten(knot_digits)));
+            knots.extend(std::iter::repeat_n(spans as i64 * power_of_ten(knot_digits), degree + 1));
         } else {
             for (distance, line) in pl.iter().zip(&lines[1..]) {
                 let units = distance.units(knot_digits).filter(|units| 0 <= *units);
                 let next = units.and_then(|units| knots[knots.len() - 1].checked_add(units));
                 let Some(next) = next else {
-                    self.assembler.error("pl-range", format!("PL={distance} in line {line} is no knot distance"), whole);
+                    self.assembler.error(
+                        "pl-range",
+                        format!("PL={distance} in line {line} is no knot distance"),
+                        whole,
+                    );
                     return None;
                 };
                 knots.push(next);
@@ -543,49 +601,70 @@ impl Reader<'_> {
             None
         } else {
             let one = Decimal::new(1, 0);
-            Some(std::iter::once(first_weight.unwrap_or(one)).chain(pw.iter().map(|w| w.unwrap_or(one))).collect())
+            Some(
+                std::iter::once(first_weight.unwrap_or(one))
+                    .chain(pw.iter().map(|w| w.unwrap_or(one)))
+                    .collect(),
+            )
         };
         let nurbs = WrittenNurbs { degree, knots, knot_digits, points, weights, lines };
-        let decimals = crate::ir::Decimals {
-            program: crate::ir::Program { name: String::new(), axes: self.assembler.machine.axes, steps: Vec::new() },
-            digits: self.assembler.digits,
-        };
-        if let Err(error) = crate::verify::to_nurbs(&decimals, &nurbs) {
+        if let Err(error) = to_nurbs(&self.assembler.empty(), &nurbs) {
             self.assembler.error("spline-unsound", error.to_string(), whole);
             return None;
         }
         Some(nurbs)
     }
 
-    /// Whether a curve moves a rotary axis while the linear ones are not linear in the parameter. A B-spline's are
-    /// where each control point lies over the mean of its inner knots, here to two units of the last decimal.
-    fn depends_on_upath(&self, curve: &Written) -> bool {
+    /// A curve that moves a rotary axis needs UPATH, where the machine has it, so that all axes follow one parameter;
+    /// a spline also needs a SPLINEPATH with every axis that it moves. Where the machine has no UPATH, rotary axes
+    /// follow the arc length, which is the same only while the linear axes are linear in the parameter.
+    fn path_reference(&mut self, curve: &Written, span: Span) {
         let axes = self.assembler.machine.axes;
         let moved = moving(curve);
-        let (rotary, linear): (Vec<usize>, Vec<usize>) = moved.iter().partition(|i| axes.kind(**i) == Kind::Rotary);
+        let (rotary, linear): (Vec<usize>, Vec<usize>) =
+            moved.iter().partition(|i| axes.kind(**i) == Kind::Rotary);
         if rotary.is_empty() {
-            return false;
+            return;
         }
-        match curve {
-            Written::Lines(_) => false,
-            // What the control makes of points is its own affair.
-            Written::Through(..) => false,
-            Written::Polynomial(polynomial) => polynomial
-                .blocks
-                .iter()
-                .any(|block| linear.iter().any(|i| block.coefficients[*i].iter().any(|a| !a.is_zero()))),
-            Written::Nurbs(nurbs) => {
-                let (p, n) = (nurbs.degree, nurbs.points.len());
-                let total = (nurbs.knots[n] - nurbs.knots[0]) as f64;
-                (0..n).any(|i| {
-                    let mean = nurbs.knots[i + 1..=i + p].iter().map(|t| *t as f64).sum::<f64>() / p as f64;
-                    let share = (mean - nurbs.knots[0] as f64) / total;
-                    linear.iter().any(|axis| {
-                        let (first, last) = (nurbs.points[0][*axis] as f64, nurbs.points[n - 1][*axis] as f64);
-                        2.0 < (nurbs.points[i][*axis] as f64 - first - share * (last - first)).abs()
+        let spline = matches!(curve, Written::Nurbs(_) | Written::Through(..));
+        if spline && !moved.iter().all(|i| self.splinepath.contains(i)) {
+            let diagnostic =
+                Diagnostic::error("splinepath-missing", "SPLINEPATH does not name every axis of this spline");
+            self.assembler
+                .diagnostics
+                .push(diagnostic.at(span, "").hint("without it the spline has the first three axes only"));
+        }
+        let shared = self.assembler.machine.spline.shared_parameter;
+        let by_arc_length =
+            if shared { !self.upath } else { !linear_in_parameter(&self.assembler.empty(), curve, &linear) };
+        if by_arc_length {
+            let message = "without UPATH the rotary axes follow the arc length here, which is another curve";
+            self.assembler.diagnostics.push(Diagnostic::error("arc-length", message).at(span, ""));
+        }
+    }
+}
+
+/// Whether the axes given are linear in the parameter on every span, to two units of the last decimal. Then their path
+/// is straight there and its length is the parameter. What the control makes of points is its own affair.
+fn linear_in_parameter(decimals: &Decimals, curve: &Written, axes: &[usize]) -> bool {
+    match curve {
+        Written::Lines(_) | Written::Through(..) => true,
+        Written::Polynomial(polynomial) => polynomial
+            .blocks
+            .iter()
+            .all(|block| axes.iter().all(|i| block.coefficients[*i].iter().all(|a| a.is_zero()))),
+        Written::Nurbs(nurbs) => to_nurbs(decimals, nurbs).is_ok_and(|spline| {
+            spline.beziers().all(|(piece, _)| {
+                let (first, last, m) = (piece.start(), piece.end(), piece.degree);
+                axes.iter().all(|&axis| {
+                    let slack = 2.0 / power_of_ten(decimals.digits[axis]) as f64;
+                    (1..m).all(|i| {
+                        let share = i as f64 / m as f64;
+                        (piece.points[i][axis] - first[axis] - share * (last[axis] - first[axis])).abs()
+                            <= slack
                     })
                 })
-            }
-        }
+            })
+        }),
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::decimal::{Decimal, Spelling, write_units};
 use crate::dialect::modal::Modal;
-use crate::ir::{Decimals, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
+use crate::ir::{
+    Decimals, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
 use crate::units::Kind;
@@ -11,7 +13,8 @@ use crate::units::Kind;
 pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     let decimals = legal.decimals();
     let size = super::super::block::expected_size(decimals);
-    let mut writer = Writer { modal: Modal::new(machine, size), decimals, upath: false, splinepath: Vec::new() };
+    let mut writer =
+        Writer { modal: Modal::new(machine, size), decimals, upath: false, splinepath: Vec::new() };
     writer.program();
     String::from_utf8(writer.modal.out).unwrap_or_default()
 }
@@ -185,7 +188,8 @@ impl Writer<'_> {
             self.motion("POLY");
             for &i in &moved {
                 let coefficients = &block.coefficients[i];
-                let count = coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
+                let count =
+                    coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
                 if count == 0 {
                     self.axis(i, block.end[i]);
                     continue;

@@ -1,0 +1,187 @@
+//! The program as a user meets it: exit codes, files, streams.
+
+use crate::support::folder;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn splinepost(arguments: &[&str], within: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_splinepost"))
+        .args(arguments)
+        .current_dir(within)
+        .output()
+        .expect("it runs")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn mill() -> String {
+    folder("fixtures/compile/conical-mill/input.toml").display().to_string()
+}
+
+#[test]
+fn compile_prints_the_program_and_a_summary() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = splinepost(&["compile", &mill(), "--to", "sinumerik"], folder.path());
+    assert_eq!(code(&output), 0);
+    let program = String::from_utf8(output.stdout.clone()).expect("ASCII");
+    assert!(program.starts_with("; CONE10\n") && program.ends_with("M30\n"));
+    let summary = stderr(&output);
+    for word in ["blocks", "mm cutting", "proved", "rad in A", "axial", "generatrix", "lead", "diameter"] {
+        assert!(summary.contains(word), "{word} is not in\n{summary}");
+    }
+}
+
+#[test]
+fn a_program_that_was_written_verifies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (machine, file) in [("sinumerik", "A.MPF"), ("heidenhain", "A.H"), ("mazak", "A.EIA")] {
+        assert_eq!(code(&splinepost(&["compile", &mill(), "--to", machine, "-o", file], folder.path())), 0);
+        let output = splinepost(&["verify", file, "--against", &mill(), "--to", machine], folder.path());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert!(stderr(&output).contains("proved"));
+        let path = folder.path().join(file);
+        let damaged = fs::read_to_string(&path).expect("text").replacen("50", "40", 1);
+        fs::write(&path, damaged).expect("written");
+        let output = splinepost(&["verify", file, "--against", &mill(), "--to", machine], folder.path());
+        assert_eq!(code(&output), 1, "{}", stderr(&output));
+        assert!(stderr(&output).contains(file), "no place in\n{}", stderr(&output));
+    }
+}
+
+#[test]
+fn bad_input_ends_with_2_and_touches_nothing() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path();
+    fs::write(at.join("empty.toml"), "").expect("written");
+    fs::write(at.join("latin.toml"), b"name = \"Fr\xe4ser\"\n").expect("written");
+    fs::write(at.join("old.mpf"), "old").expect("written");
+    fs::create_dir(at.join("sub")).expect("made");
+    let mill = mill();
+    let cases: &[&[&str]] = &[
+        &["compile", "empty.toml", "--to", "sinumerik", "-o", "old.mpf"],
+        &["compile", "latin.toml", "--to", "sinumerik", "-o", "old.mpf"],
+        &["compile", "sub", "--to", "sinumerik", "-o", "old.mpf"],
+        &["compile", "none.toml", "--to", "sinumerik", "-o", "old.mpf"],
+        &["compile", &mill, "--to", "sinumeric", "-o", "old.mpf"],
+        &["compile", &mill, "--to", "sinumerik", "--motion", "spl", "-o", "old.mpf"],
+        &["compile", &mill, "--to", "sinumerik", "--tolerance", "0", "-o", "old.mpf"],
+        &["compile", &mill, "--to", "sinumerik", "--tolerance", "1e-9", "-o", "old.mpf"],
+        &["compile", &mill, "--to", "sinumerik", "-o", "sub"],
+        &["compile", &mill, "--to", "sinumerik", "-o", "none/there.mpf"],
+        &["compile", &mill],
+        &["verify", "none.mpf", "--against", &mill, "--to", "sinumerik"],
+        &["interpolate", "empty.toml"],
+        &["machines", "--show", "none"],
+    ];
+    for case in cases {
+        let output = splinepost(case, at);
+        assert_eq!(code(&output), 2, "{case:?}: {}", stderr(&output));
+        assert!(
+            output.stdout.is_empty() && stderr(&output).contains("error"),
+            "{case:?}: {}",
+            stderr(&output)
+        );
+    }
+    assert_eq!(fs::read_to_string(at.join("old.mpf")).expect("still there"), "old");
+    let mut left: Vec<String> = fs::read_dir(at)
+        .expect("a folder")
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
+    left.sort();
+    assert_eq!(left, ["empty.toml", "latin.toml", "old.mpf", "sub"]);
+}
+
+#[test]
+fn messages_come_as_json_lines() {
+    let dir = tempfile::tempdir().expect("a folder");
+    fs::write(dir.path().join("bad.toml"), "[cutter]\nD2 = 1\n").expect("written");
+    let output =
+        splinepost(&["--message-format", "json", "compile", "bad.toml", "--to", "mazak"], dir.path());
+    let line: serde_json::Value =
+        serde_json::from_str(stderr(&output).lines().next().expect("a line")).expect("JSON");
+    assert_eq!((&line["id"], &line["line"], &line["column"]), (&"key-unknown".into(), &2.into(), &1.into()));
+    let output =
+        splinepost(&["--message-format", "json", "compile", &mill(), "--to", "sinumerik"], dir.path());
+    let last: serde_json::Value =
+        serde_json::from_str(stderr(&output).lines().last().expect("a line")).expect("JSON");
+    assert_eq!(last["summary"]["status"], "proved");
+}
+
+#[test]
+fn standard_input_and_output_serve_as_files() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_splinepost"))
+        .args(["compile", "-", "--to", "sinumerik"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it runs");
+    let text = fs::read(mill()).expect("the input");
+    child.stdin.take().expect("a pipe").write_all(&text).expect("written");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(output.stdout.starts_with(b"; CONE10"));
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_splinepost"))
+        .args(["compile", &mill(), "--to", "sinumerik", "--motion", "linear"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it runs");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+#[test]
+fn without_proof_the_program_says_so() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let output = splinepost(&["compile", &mill(), "--to", "sinumerik", "--no-verify"], dir.path());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("; NOT VERIFIED\n"));
+    assert!(stderr(&output).contains("not verified"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_existing_file_keeps_its_mode_and_links_are_followed() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let dir = tempfile::tempdir().expect("a folder");
+    let target = dir.path().join("real.mpf");
+    fs::write(&target, "old").expect("written");
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("set");
+    symlink("real.mpf", dir.path().join("link.mpf")).expect("linked");
+    assert_eq!(
+        code(&splinepost(&["compile", &mill(), "--to", "sinumerik", "-o", "link.mpf"], dir.path())),
+        0
+    );
+    assert!(dir.path().join("link.mpf").is_symlink());
+    assert_eq!(fs::metadata(&target).expect("there").permissions().mode() & 0o777, 0o640);
+    assert!(fs::read_to_string(&target).expect("text").starts_with("; CONE10"));
+    let output = splinepost(&["compile", &mill(), "--to", "sinumerik", "-o", "/dev/null"], dir.path());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+#[test]
+fn lists_and_dumps_are_printed() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let machines = splinepost(&["machines"], dir.path());
+    assert!(String::from_utf8_lossy(&machines.stdout).contains("sinumerik-840d"));
+    let show = splinepost(&["machines", "--show", "mazak"], dir.path());
+    assert!(String::from_utf8_lossy(&show.stdout).contains("which axes G06.1 and G06.2 may move"));
+    let dump = splinepost(&["dump", &mill()], dir.path());
+    assert!(String::from_utf8_lossy(&dump.stdout).contains("logarithmic D1 10 S 30"));
+    assert_eq!(code(&splinepost(&["check", &mill()], dir.path())), 0);
+    assert_eq!(code(&splinepost(&["completions", "bash"], dir.path())), 0);
+}

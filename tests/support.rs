@@ -1,0 +1,109 @@
+//! What several tests share: cutters, machines, compiling.
+
+use splinepost::diagnostic::Diagnostics;
+use splinepost::dialect::Motion;
+use splinepost::machine::Machine;
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::{Options, Output, compile, front};
+use std::path::PathBuf;
+
+/// A folder of the project.
+pub(crate) fn folder(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Whether expected files are to be written anew: `SPLINEPOST_BLESS=1 cargo test`. Read what changed before committing.
+pub(crate) fn bless() -> bool {
+    std::env::var_os("SPLINEPOST_BLESS").is_some()
+}
+
+/// Cutters from the ordinary to the awkward, as lines of [cutter].
+pub(crate) const CUTTERS: &[(&str, &str)] = &[
+    ("paper", "D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30"),
+    ("cylinder", "D1 = 10\nS = 30\nC = 0\nr = 8\nlength = 30"),
+    ("reverse-taper", "D1 = 12\nS = 30\nC = -5\nr = 8\nlength = 20"),
+    ("steep-cone", "D1 = 6\nS = 30\nC = 30\nr = 8\nlength = 12"),
+    ("high-helix", "D1 = 10\nS = 60\nC = 5\nr = 8\nlength = 30"),
+    ("straight-flute", "D1 = 10\nS = 0\nC = 5\nr = 8\nlength = 30"),
+    ("small", "D1 = 0.5\nS = 30\nC = 5\nr = 8\nlength = 5"),
+    ("long", "D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 200"),
+    ("six-flutes", "D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nflutes = 6"),
+    ("left-hand", "D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nhand = \"left\""),
+    ("constant-lead", "D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nlaw = \"constant-lead\""),
+    ("no-rake", "D1 = 10\nS = 30\nC = 5\nr = 0\nlength = 30"),
+];
+
+/// A cutter file.
+pub(crate) fn input(cutter: &str, interpolation: &str) -> String {
+    format!(
+        "name = \"CONE10\"\n[cutter]\n{cutter}\n[interpolation]\n{interpolation}\n\
+         [process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\nspindle = 3000\n"
+    )
+}
+
+/// The built-in machine of each dialect, with A in splines allowed.
+pub(crate) fn machines() -> Vec<Machine> {
+    let file = |name: &str| {
+        format!("extends = \"{name}\"\nname = \"{name}\"\n[spline]\naxes = [\"X\", \"Y\", \"Z\", \"A\"]\n")
+    };
+    let mut machines: Vec<Machine> =
+        splinepost::dialect::DIALECTS.iter().map(|d| machine(&file(d.name))).collect();
+    machines.push(machine(&file("sinumerik-840d")));
+    machines
+}
+
+/// A machine from its file.
+pub(crate) fn machine(text: &str) -> Machine {
+    Machine::parse(text, SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// The text as the only source.
+pub(crate) fn sources(text: &str) -> Sources {
+    Sources::new(Source::new("input.toml", text))
+}
+
+/// Compiles a cutter file.
+pub(crate) fn compiled(
+    text: &str,
+    machine: &Machine,
+    motion: Option<&'static Motion>,
+) -> Result<Output, Diagnostics> {
+    let options = Options { motion, ..Options::default() };
+    let language = front::find("cutter").expect("the cutter language");
+    compile(&sources(text), language, machine, &options).map_err(|failure| failure.diagnostics)
+}
+
+/// Compares with a file, or writes it where that is asked for.
+pub(crate) fn compare(path: &std::path::Path, actual: &str, wrong: &mut Vec<String>) {
+    let expected = std::fs::read(path).ok();
+    if expected.as_deref() == Some(actual.as_bytes()) {
+        return;
+    }
+    if bless() {
+        std::fs::write(path, actual).expect("the fixture can be written");
+        return;
+    }
+    let shown = path.strip_prefix(folder("")).unwrap_or(path).display().to_string();
+    let Some(expected) = expected else {
+        wrong.push(format!("{shown} is missing"));
+        return;
+    };
+    let expected = String::from_utf8_lossy(&expected);
+    let at = expected.lines().zip(actual.lines()).take_while(|(a, b)| a == b).count();
+    let line = |text: &str| text.lines().nth(at).unwrap_or("(the end)").to_owned();
+    wrong.push(format!(
+        "{shown}:{} differs\n  expected {}\n  got      {}",
+        at + 1,
+        line(&expected),
+        line(actual)
+    ));
+}
+
+/// Fails with all that is wrong.
+pub(crate) fn fail_on(wrong: &[String]) {
+    assert!(
+        wrong.is_empty(),
+        "{}\n(SPLINEPOST_BLESS=1 writes expected files anew; read the difference before committing)",
+        wrong.join("\n")
+    );
+}

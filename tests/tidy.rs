@@ -1,0 +1,138 @@
+//! Documents, fixtures and the rules of `docs/architecture.md` in step with the code.
+
+use crate::support::folder;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn files(under: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(under).expect("a folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn source(path: &Path) -> String {
+    fs::read_to_string(path).expect("UTF-8")
+}
+
+/// The code without its tests and comments.
+fn code(path: &Path) -> String {
+    let text = source(path);
+    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn every_dialect_has_a_page_and_a_machine() {
+    for dialect in splinepost::dialect::DIALECTS {
+        let page = folder("docs/dialects").join(format!("{}.md", dialect.name));
+        let text = source(&page);
+        for motion in dialect.motions {
+            assert!(
+                text.contains(&format!("`{}`", motion.name)),
+                "{} does not name {}",
+                page.display(),
+                motion.name
+            );
+        }
+        assert!(
+            splinepost::machine::built_in(dialect.name).is_some(),
+            "{} has no default machine",
+            dialect.name
+        );
+    }
+}
+
+#[test]
+fn storeys_import_only_what_they_may() {
+    let forbidden: &[(&str, &[&str])] = &[
+        (
+            "src/geom",
+            &[
+                "crate::ir",
+                "crate::decimal",
+                "crate::diagnostic",
+                "crate::source",
+                "crate::machine",
+                "crate::dialect",
+                "crate::front",
+                "crate::pass",
+                "crate::verify",
+            ],
+        ),
+        ("src/dialect", &["crate::front"]),
+        ("src/front", &["crate::dialect"]),
+    ];
+    for (storey, names) in forbidden {
+        for path in files(&folder(storey), "rs") {
+            for name in *names {
+                assert!(!code(&path).contains(name), "{} imports {name}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_library_does_no_input_or_output() {
+    for path in files(&folder("src"), "rs") {
+        if path.components().any(|part| part.as_os_str() == "cli") || path.ends_with("main.rs") {
+            continue;
+        }
+        for word in
+            ["std::fs", "std::io", "println!", "std::env", "std::process", ".unwrap()", ".expect(", "panic!("]
+        {
+            assert!(!code(&path).contains(word), "{} has {word}", path.display());
+        }
+    }
+}
+
+#[test]
+fn intermediate_types_are_not_serialised() {
+    assert!(!code(&folder("src/ir.rs")).contains("serde"));
+}
+
+#[test]
+fn numbers_are_rounded_in_one_place() {
+    // Knots are free numbers, so `convert` chooses them on the control's grid; nothing else rounds before or after.
+    for storey in ["src/pass", "src/dialect"] {
+        for path in files(&folder(storey), "rs") {
+            if path.ends_with("quantise.rs") || path.ends_with("convert.rs") {
+                continue;
+            }
+            for word in ["round_units", "Decimal::round"] {
+                assert!(!code(&path).contains(word), "{} rounds", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn transcendental_functions_have_one_home() {
+    for path in files(&folder("src"), "rs") {
+        if !path.ends_with("elementary.rs") {
+            assert!(!code(&path).contains("libm::"), "{} calls libm", path.display());
+        }
+    }
+}
+
+#[test]
+fn files_stay_readable() {
+    for path in files(&folder("src"), "rs") {
+        let lines = source(&path).lines().count();
+        assert!(lines <= 700, "{} has {lines} lines: look for the seam", path.display());
+    }
+    for path in
+        [files(&folder("src"), "rs"), files(&folder("docs"), "md"), files(&folder("tests"), "rs")].concat()
+    {
+        for (i, line) in source(&path).lines().enumerate() {
+            assert_eq!(line, line.trim_end(), "{}:{} has blanks at its end", path.display(), i + 1);
+        }
+    }
+}
