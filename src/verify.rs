@@ -117,8 +117,9 @@ pub fn verify(
     for located in &intent.program.steps {
         match &located.step {
             Step::Comment(comment) => cursor.comment(comment)?,
-            Step::Tool(number) => cursor
-                .meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?,
+            Step::Tool(number) => {
+                cursor.meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?
+            }
             Step::Spindle(rpm) => {
                 let rounded = Decimal::round(*rpm, machine.digits.feed);
                 cursor.meet(
@@ -254,11 +255,7 @@ impl<'p> Cursor<'p> {
     }
 
     /// Meets a step that is no path.
-    fn meet(
-        &mut self,
-        what: &str,
-        is: impl Fn(&Step<Decimal, Written>) -> bool,
-    ) -> Result<(), Diagnostics> {
+    fn meet(&mut self, what: &str, is: impl Fn(&Step<Decimal, Written>) -> bool) -> Result<(), Diagnostics> {
         self.skip_comments();
         match self.step() {
             None => Err(self.differs("less-than-asked", format!("the program ends where {what} was asked"))),

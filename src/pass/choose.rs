@@ -1,6 +1,7 @@
 //! One motion for a program, where `auto` leaves it open: the one with the fewest blocks that this machine takes and
 //! whose path can be proved. At equal numbers the dialect's own order decides; through-point motions are never chosen,
-//! since only the control knows their shape, and a path that is straight anyway is written as lines.
+//! since only the control knows their shape, and a path that is made of lines anyway is written as lines: a straight
+//! one, and odd-even steps where the input asks for them.
 
 use super::{convert, interpolate, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -21,7 +22,7 @@ pub fn choose(
     let mut warnings = Diagnostics::new();
     let blocked = machine.axes_without_spline(&moving_axes(intent));
     let straight = paths(intent).all(|curve| match curve {
-        Curve::Logarithmic(log) => log.curve.is_straight() && log.method != Method::OddEven,
+        Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
         Curve::Lines(_) => true,
         Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
     });
