@@ -118,7 +118,8 @@ pub fn verify(
         match &located.step {
             Step::Comment(comment) => cursor.comment(comment)?,
             Step::Tool(number) => {
-                cursor.meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?
+                cursor
+                    .meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?;
             }
             Step::Spindle(rpm) => {
                 let rounded = Decimal::round(*rpm, machine.digits.feed);
@@ -617,7 +618,7 @@ impl<'p> Cursor<'p> {
 pub fn same_form(text: &str, written: &str, id: SourceId) -> Result<(), Diagnostics> {
     let mut start = 0;
     let mut expected = written.lines();
-    let mut differs = |range: std::ops::Range<usize>, line: Option<&str>| {
+    let differs = |range: std::ops::Range<usize>, line: Option<&str>| {
         let message = "the program means what was asked, but this line is not as it would be written";
         let diagnostic = Diagnostic::refusal("form-differs", message).at(Span::new(id, range), "");
         Err(match line {

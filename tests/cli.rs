@@ -133,6 +133,20 @@ fn standard_input_and_output_serve_as_files() {
 }
 
 #[test]
+fn coarse_steps_are_warned_of_and_written() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let text =
+        fs::read_to_string(mill()).expect("the input") + "[interpolation]\ndl = 0.5\ntolerance = 0.0005\n";
+    fs::write(dir.path().join("coarse.toml"), text).expect("written");
+    let output =
+        splinepost(&["compile", "coarse.toml", "--to", "sinumerik", "--motion", "linear"], dir.path());
+    assert_eq!(code(&output), 0);
+    let told = stderr(&output);
+    assert!(told.contains("warning[steps-exceed-tolerance]") && told.contains("dl = 0.3"), "{told}");
+    assert!(!output.stdout.is_empty());
+}
+
+#[test]
 fn a_closed_pipe_is_no_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_splinepost"))
         .args(["compile", &mill(), "--to", "sinumerik", "--motion", "linear"])

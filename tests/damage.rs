@@ -81,7 +81,7 @@ fn damaged(program: &str) -> Vec<(String, String)> {
     };
     // Of long runs of like blocks the first, some in the middle and the last are enough.
     let is_long = 120 < lines.len();
-    let interesting = |i: usize| !is_long || i < 25 || lines.len() < i + 12 || i % 37 == 0;
+    let interesting = |i: usize| !is_long || i < 25 || lines.len() < i + 12 || i.is_multiple_of(37);
     for (i, line) in lines.iter().enumerate().filter(|(i, _)| interesting(*i)) {
         for fault in faults(line) {
             let mut changed = lines.clone();

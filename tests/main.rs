@@ -6,6 +6,7 @@
 //! | `errors` | bad inputs and their rendered diagnostics |
 //! | `paper` | the table of the paper, row by row |
 //! | `roundtrip` | what is written reads back to the same text |
+//! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
@@ -15,6 +16,7 @@ mod damage;
 mod errors;
 mod golden;
 mod paper;
+mod robust;
 mod roundtrip;
 mod support;
 mod tidy;

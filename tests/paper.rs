@@ -1,5 +1,7 @@
 //! Jiang and Chen's accuracy test: the 20 rows of Table 1 and the figures of the text.
 
+#![allow(clippy::approx_constant, reason = "the paper's figures are not constants of nature")]
+
 use crate::support::sources;
 use splinepost::front::cutter;
 use splinepost::points::Table;

@@ -36,7 +36,10 @@ pub const LANGUAGES: &[Language] = &[Language {
         let input = sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)?;
         cutter::parse_program(input, SourceId::INPUT)
     },
-    recognise: |text| text.lines().any(|line| line.trim_start().starts_with("[cutter]")),
+    recognise: |text| {
+        let text = text.trim_start_matches('\u{feff}');
+        text.lines().any(|line| line.trim_start().starts_with("[cutter]"))
+    },
 }];
 
 /// The language of a name.

@@ -23,8 +23,8 @@
 use super::deviation::{Bound, log_chord};
 use super::logcurve::LogCurve;
 
-/// Above this many points a spec is a mistake: 10⁸ points are some gigabytes of program.
-pub const MAX_POINTS: f64 = 1.0e8;
+/// Above this many points a spec is a mistake: 5·10⁷ points are some gigabytes of program.
+pub const MAX_POINTS: f64 = 5.0e7;
 
 /// Why a step length cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -80,12 +80,16 @@ impl OddEven {
         if limit <= dl {
             return Err(StepError::TooLarge { limit });
         }
-        // Arc length ∫√(1 + A'²) dX in the mixed measure, from above.
-        let points = curve.end() * (1.0 + (curve.k() / q) * (curve.k() / q)).sqrt() / dl;
+        let points = most_points(&curve, dl);
         if MAX_POINTS < points {
             return Err(StepError::TooManyPoints { points });
         }
         Ok(OddEven { curve, dl, overrun, x: 0.0, a: 0.0, even: None, done: false })
+    }
+
+    /// Not fewer points than there will be.
+    pub fn most_points(&self) -> f64 {
+        most_points(&self.curve, self.dl) + 2.0
     }
 
     /// The odd step and the even step from X, as ((ΔX10, ΔA10), (ΔX21, ΔA21)).
@@ -102,6 +106,12 @@ impl OddEven {
         let da21 = da10 * (3.0 - 2.0 * w * (3.0 - 4.0 * w)) * scale;
         ((dx10, da10), (dx21, da21))
     }
+}
+
+/// The arc length ∫√(1 + A′²) dX in the mixed measure, from above, in steps.
+fn most_points(curve: &LogCurve, dl: f64) -> f64 {
+    let slope = curve.slope(0.0).abs().max(curve.slope(curve.end()).abs());
+    curve.end() * (1.0 + slope * slope).sqrt() / dl
 }
 
 impl Iterator for OddEven {

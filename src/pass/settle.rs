@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::fit::{self, FitError};
-use crate::geom::oddeven::{OddEven, StepError, largest_step};
+use crate::geom::oddeven::{MAX_POINTS, OddEven, StepError, largest_step};
 use crate::ir::{Curve, Intent, Logarithmic, Method, Step};
 
 /// The greatest Δl taken where the input names none.
@@ -20,6 +20,7 @@ pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Dia
     let mut settled = intent.clone();
     // Flutes differ in their index only, so one search serves them all.
     let mut found: Option<(Logarithmic, f64)> = None;
+    let mut points = 0.0;
     for located in &mut settled.program.steps {
         let Step::Cut(cut) = &mut located.step else { continue };
         let Curve::Logarithmic(log) = &mut cut.curve else { continue };
@@ -28,21 +29,28 @@ pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Dia
             Method::Auto => Method::Direct,
             method @ (Method::OddEven | Method::Direct) => method,
         };
-        if log.method != Method::OddEven || log.dl.is_some() {
+        if log.method != Method::OddEven {
             continue;
         }
-        let mut key = log.clone();
-        key.curve.index = 0.0;
-        let dl = match &found {
-            Some((known, dl)) if *known == key => *dl,
-            _ => step(log, tolerance).map_err(|error| {
-                Diagnostic::refusal("points-too-many", format!("holding {tolerance} mm with lines: {error}"))
-                    .at(located.span, "")
-                    .hint("allow a larger tolerance, state dl, or let a spline motion do it")
-            })?,
+        let too_many = |error: &StepError| {
+            Diagnostic::refusal("points-too-many", format!("holding {tolerance} mm with lines: {error}"))
+                .at(located.span, "")
+                .hint("allow a larger tolerance, state a larger dl, or let a spline motion do it")
         };
-        found = Some((key, dl));
-        log.dl = Some(dl);
+        if log.dl.is_none() {
+            let mut key = log.clone();
+            key.curve.index = 0.0;
+            let dl = match &found {
+                Some((known, dl)) if *known == key => *dl,
+                _ => step(log, tolerance).map_err(|error| too_many(&error))?,
+            };
+            found = Some((key, dl));
+            log.dl = Some(dl);
+        }
+        points += steps(log).map_err(|error| too_many(&error))?.most_points();
+        if MAX_POINTS < points {
+            return Err(too_many(&StepError::TooManyPoints { points }).into());
+        }
     }
     Ok(settled)
 }

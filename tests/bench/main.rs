@@ -69,7 +69,7 @@ fn whole(c: &mut Criterion) {
         [("sinumerik", "poly"), ("sinumerik", "bspline"), ("sinumerik", "linear"), ("heidenhain", "spl")]
     {
         group.bench_function(format!("{machine}/{motion}"), |b| {
-            b.iter(|| text(black_box(&sources), machine, Some(motion)))
+            b.iter(|| text(black_box(&sources), machine, Some(motion)));
         });
     }
     group.finish();
