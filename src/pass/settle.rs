@@ -55,12 +55,12 @@ pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Dia
     Ok(settled)
 }
 
-/// The largest Δl ≤ [`MAX_STEP`] that holds the tolerance, mm.
+/// The largest Δl that holds the tolerance, mm: at most the Δl that was asked for, or else [`MAX_STEP`].
 ///
 /// # Errors
 /// It makes too many points.
 pub fn step(log: &Logarithmic, tolerance: f64) -> Result<f64, StepError> {
-    largest_step(&log.curve, tolerance, MAX_STEP, log.overrun)
+    largest_step(&log.curve, tolerance, log.dl.unwrap_or(MAX_STEP), log.overrun)
 }
 
 /// The odd-even steps of a settled curve.
