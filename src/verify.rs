@@ -444,8 +444,8 @@ impl<'p> Cursor<'p> {
     ) -> Result<(), Diagnostics> {
         let start = self.decimals.position(&self.before(points));
         found.deviation = found.deviation.max(surface_distance(curve, &start, 0.0, 0.0));
-        let half_unit = 0.5 * self.resolution(curve);
         for (x, a) in steps {
+            let half_unit = 0.5 * self.resolution(curve.radius(x));
             let Some(units) = self.next_point(points) else {
                 return Err(
                     self.differs("less-than-asked", "points are missing at the end of a path".to_owned())
@@ -478,7 +478,7 @@ impl<'p> Cursor<'p> {
             self.decimals.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
         let metric = Metric::new(&metric_kinds, curve.max_radius());
         // Two roundings of a position, at the radius.
-        let slack = 1.0e-9 + self.resolution(curve);
+        let slack = 1.0e-9 + self.resolution(curve.max_radius());
         let mut from = curve.position(0.0);
         let mut rest = pieces.iter().peekable();
         if let Some(first) = pieces.first() {
@@ -511,10 +511,10 @@ impl<'p> Cursor<'p> {
         Ok(())
     }
 
-    /// One unit of the last decimal in every axis, mm at the surface.
-    fn resolution(&self, curve: &LogCurve) -> f64 {
+    /// One unit of the last decimal in every axis, mm at `radius`.
+    fn resolution(&self, radius: f64) -> f64 {
         let unit = |axis: usize| 1.0 / crate::decimal::power_of_ten(self.decimals.digits[axis]) as f64;
-        let arc = unit(3) / DEGREES * curve.max_radius();
+        let arc = unit(3) / DEGREES * radius;
         (unit(0) * unit(0) + unit(1) * unit(1) + unit(2) * unit(2) + arc * arc).sqrt()
     }
 

@@ -85,8 +85,10 @@ pub enum OrderError {
 pub fn log_chord(curve: &LogCurve, (x0, a0): (f64, f64), (x1, a1): (f64, f64)) -> Bound {
     let (k, beta) = (curve.k(), curve.beta());
     let (f0, f1) = (a0 - curve.angle(x0), a1 - curve.angle(x1));
-    let q = 1.0 + beta * x0.min(x1).max(0.0).min(x0.max(x1));
-    let q = q.min(1.0 + beta * x0.max(x1));
+    let q = (1.0 + beta * x0).min(1.0 + beta * x1);
+    if q <= 0.0 {
+        return Bound { mm: f64::INFINITY, rad: f64::INFINITY };
+    }
     let bend = (k * beta).abs() / (q * q);
     let sag = (x1 - x0) * (x1 - x0) * 0.125 * bend;
     let (low, high) = if 0.0 <= k * beta {
@@ -149,6 +151,9 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
     let z = piece.numerator(2).combined(1.0, &x, -curve.z_slope());
     let greatest = angle.control_points().iter().fold(0.0, |most: f64, p| most.max(p[3].abs()));
     let backward_noise = -ROUNDING * forward.max_abs();
+    // g is a difference of two products, and each of them rounds.
+    let g_noise =
+        ROUNDING * (quotient_rule(&a).max_abs() * q.max_abs() + k.abs() * forward.max_abs() * d.max_abs());
 
     let mut bound = Bound::ZERO;
     let mut seen: f64 = 0.0;
@@ -169,7 +174,7 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
             let first = at(span.x.start(), span.a.start(), span.d.start());
             let last = at(span.x.end(), span.a.end(), span.d.end());
             let ends = first.0.max(last.0);
-            let rad = ends + 0.5 * width * span.g.max_abs() / (d_min * d_min * q_min) + ROUNDING * greatest;
+            let rad = ends + 0.5 * width * (span.g.max_abs() + g_noise) / (d_min * d_min * q_min) + ROUNDING * greatest;
             // N_X/D lies between the extremes of w_i X_i / D.
             let (x_min, x_max) = (span.x.min(), span.x.max());
             let d_max = span.d.max();
@@ -259,10 +264,13 @@ pub fn segment_piece(
         if s < last - slack {
             return Err(OrderError::RunsBack);
         }
-        last = s;
+        // Running back within the slack costs what it runs back.
+        let back = f64::max(last - s, 0.0);
+        last = last.max(s);
         let share = if length == 0.0 { 0.0 } else { (s / length).clamp(0.0, 1.0) };
         let foot: Position = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
-        bound = bound.max(metric.distance(point, &foot));
+        let distance = metric.distance(point, &foot);
+        bound = bound.max(Bound { mm: distance.mm + back, rad: distance.rad });
     }
     Ok(bound)
 }
