@@ -15,17 +15,24 @@ pub struct Key {
     pub name: &'static str,
     /// The keys of its table; empty where the value is no table.
     pub inner: &'static [Key],
+    /// Whether it is a table of tables with any names, `inner` being the keys of each.
+    pub each: bool,
 }
 
 impl Key {
     /// A key with a value.
     pub const fn value(name: &'static str) -> Key {
-        Key { name, inner: &[] }
+        Key { name, inner: &[], each: false }
     }
 
     /// A key with a table.
     pub const fn table(name: &'static str, inner: &'static [Key]) -> Key {
-        Key { name, inner }
+        Key { name, inner, each: false }
+    }
+
+    /// A key with a table of tables, each of any name and with the same keys.
+    pub const fn each(name: &'static str, inner: &'static [Key]) -> Key {
+        Key { name, inner, each: true }
     }
 }
 
@@ -96,7 +103,15 @@ fn walk(table: &DeTable<'_>, keys: &[Key], within: &str, source: SourceId, diagn
         };
         if let (DeValue::Table(inner), false) = (value.get_ref(), known.inner.is_empty()) {
             let path = if within.is_empty() { name.to_owned() } else { format!("{within}.{name}") };
-            walk(inner, known.inner, &path, source, diagnostics);
+            if !known.each {
+                walk(inner, known.inner, &path, source, diagnostics);
+                continue;
+            }
+            for (name, value) in inner {
+                if let DeValue::Table(table) = value.get_ref() {
+                    walk(table, known.inner, &format!("{path}.{}", name.get_ref()), source, diagnostics);
+                }
+            }
         }
     }
 }

@@ -174,7 +174,9 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
             let first = at(span.x.start(), span.a.start(), span.d.start());
             let last = at(span.x.end(), span.a.end(), span.d.end());
             let ends = first.0.max(last.0);
-            let rad = ends + 0.5 * width * (span.g.max_abs() + g_noise) / (d_min * d_min * q_min) + ROUNDING * greatest;
+            let rad = ends
+                + 0.5 * width * (span.g.max_abs() + g_noise) / (d_min * d_min * q_min)
+                + ROUNDING * greatest;
             // N_X/D lies between the extremes of w_i X_i / D.
             let (x_min, x_max) = (span.x.min(), span.x.max());
             let d_max = span.d.max();

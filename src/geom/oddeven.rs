@@ -204,7 +204,17 @@ pub fn largest_step(curve: &LogCurve, tolerance: f64, most: f64, overrun: bool) 
             high = middle;
         }
     }
-    Ok(low)
+    let short = four_digits_down(low);
+    Ok(if holds(short)? { short } else { low })
+}
+
+/// `x` > 0 cut off after four significant digits, so that it can be named.
+fn four_digits_down(x: f64) -> f64 {
+    let mut scale = 1.0;
+    while x * scale < 1000.0 {
+        scale *= 10.0;
+    }
+    (x * scale).floor() / scale
 }
 
 #[cfg(test)]

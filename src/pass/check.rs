@@ -4,6 +4,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::geom::bezier::Bezier;
 use crate::ir::{Decimals, Step, Units, Written};
 use crate::machine::Machine;
+use crate::pass::limits;
 use crate::units::{Axis, DEGREES, Kind, MAX_AXES, Position};
 
 /// A program in decimals that one machine takes.
@@ -60,6 +61,7 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
         }
     }
     reach.report(&decimals, machine, &mut found);
+    found.extend(limits::speeds(&decimals, machine));
     if !splines_move.is_empty() {
         let names: Vec<&str> = splines_move.iter().map(Axis::as_str).collect();
         let names = names.join(", ");
@@ -148,14 +150,25 @@ impl Reach {
                     format!("{axis} goes to {far}, beyond ±99999.9999"),
                 ));
             }
+            let limits = machine.limits(*axis);
+            let (least, most) =
+                (limits.min.unwrap_or(f64::NEG_INFINITY), limits.max.unwrap_or(f64::INFINITY));
+            if low < least || most < high {
+                let message = format!(
+                    "{axis} goes from {low:.4} to {high:.4}, beyond the {least} to {most} of machine `{}`",
+                    machine.name
+                );
+                found.push(Diagnostic::refusal("axis-range", message));
+            }
             if *kind == Kind::Rotary && (low < 0.0 || 360.0 < high) {
                 let range = format!("{axis} runs from {low:.3} to {high:.3} degrees, outside 0 to 360");
-                found.push(if machine.wraps {
+                found.push(if limits.modulo {
                     Diagnostic::refusal("rotary-wraps", format!("{range}, and machine `{}` wraps there", machine.name))
-                        .hint("set [axes] wraps = false if the axis counts on, or give each flute its own index")
+                        .hint(format!("set [axis.{axis}] kind = \"linear\" if the axis counts on"))
+                        .hint("or shift the flutes with `index`, so that each stays within 0 to 360")
                 } else {
                     Diagnostic::warning("rotary-range", range).hint(format!(
-                        "machine `{}` says [axes] wraps = false: the axis counts on and never takes the short way round",
+                        "machine `{}` says [axis.{axis}] kind = \"linear\": it counts on and never takes the short way round",
                         machine.name
                     ))
                 });

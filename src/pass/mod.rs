@@ -9,10 +9,12 @@
 //! | [`convert`] | every curve takes the form of the motion, exactly |
 //! | [`quantise`] | every number is rounded, once |
 //! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
+//! | [`limits`] | how fast each axis has to move |
 
 pub mod check;
 pub mod choose;
 pub mod convert;
 pub mod interpolate;
+pub mod limits;
 pub mod quantise;
 pub mod settle;
