@@ -32,9 +32,7 @@ enum Motion {
 }
 
 /// Codes that state what the IR assumes anyway, and codes of how exactly the control runs, which move no path; in tenths.
-const STATE_CODES: &[i64] = &[
-    150, 170, 210, 400, 490, 540, 550, 560, 570, 580, 590, 610, 611, 640, 670, 690, 800, 900, 940, 970, 980,
-];
+const STATE_CODES: &[i64] = &[150, 170, 210, 400, 490, 610, 611, 640, 670, 690, 800, 900, 940, 970, 980];
 
 /// Codes under which the same words are another path, and what they mean; in tenths.
 const REFUSED_CODES: &[(i64, &str)] = &[
@@ -101,6 +99,8 @@ struct Reader<'m> {
     z: Option<usize>,
     /// The tool whose length offset is still to be called.
     offset_due: Option<u32>,
+    /// The work offset in force, G54 to G59, in tenths.
+    work_offset: Option<i64>,
     warned_left_out: bool,
 }
 
@@ -117,6 +117,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         remarks: Vec::new(),
         z: Axis::new("Z").and_then(|z| machine.axes.index_of(z)),
         offset_due: None,
+        work_offset: None,
         warned_left_out: false,
     };
     for line in Lines::new(text) {
@@ -144,6 +145,12 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             }
             if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
                 reader.tool_line(body, &offset);
+                // The machine's own lines may hold a work offset; another one later would be another place.
+                let mut codes =
+                    body.split_whitespace().filter_map(|code| code.strip_prefix("G5")?.parse().ok());
+                if let Some(digit) = codes.rfind(|digit: &i64| (4..=9).contains(digit)) {
+                    reader.work_offset = Some(500 + 10 * digit);
+                }
                 continue;
             }
         }
@@ -295,6 +302,17 @@ impl Reader<'_> {
             }
             Some(430) => {
                 block.offset = Some(range);
+                return;
+            }
+            Some(tenths @ (540 | 550 | 560 | 570 | 580 | 590)) => {
+                if self.work_offset.is_some_and(|known| known != tenths) {
+                    self.error(
+                        "code-refused",
+                        format!("G{value}: another work offset is another place"),
+                        range,
+                    );
+                }
+                self.work_offset = Some(tenths);
                 return;
             }
             Some(tenths) if STATE_CODES.contains(&tenths) => return,
@@ -622,6 +640,7 @@ mod tests {
         is("/G1 X1.\n", "block-skip", "/G1");
         is("G05.1 Q2\n", "code-refused", "G05.1");
         is("G43 H1\n", "tool-offset", "G43");
+        is("G54\nG55\n", "code-refused", "G55");
         is("X=PO\n", "word-unreadable", "X=PO");
         is("Q1=3.\n", "axis-unknown", "Q1=3.");
     }
