@@ -1,11 +1,121 @@
-//! stub
-use super::{Dialect, Motion};
-/// The dialect.
+//! ISO controls: Mazak Matrix and Smooth.
+//!
+//! Sources: Mitsubishi *M700V Programming Manual* 6.15 (Mazak's sibling text), Fanuc *15i/150i-MA Operator's Manual*
+//! B-63324EN/03 4.17; what is Mazak's own and how sure it is stands in `docs/dialects/mazak.md`. Another control of this
+//! family is another [`Dialect`] with its own table of motions over the same reader and writer: a motion that is not in
+//! its table is not read.
+//!
+//! # How its curves differ from ours
+//!
+//! **G06.2.** One might expect a degree. P is the *order*, degree + 1, and 4 where it is missing. One might expect a
+//! knot vector. There is a knot K on each block, and after the last control point `order` blocks of K alone. For
+//! n + 1 control points P_0 … P_n of order p the knots t_0 … t_{n+p} are simply the K in the order of the text:
+//!
+//! ```text
+//! block of P_i      K = t_i             i = 0 … n          t_i is the *first* knot of the support of N_i
+//! closing block j   K = t_{n+1+j}       j = 0 … p−1
+//!
+//! P(t) = Σ N_{i,p}(t) w_i P_i / Σ N_{i,p}(t) w_i           t_{p−1} ≤ t ≤ t_{n+1}
+//! ```
+//!
+//! The first p and the last p knots are equal, so that the curve starts at P_0 and ends at P_n. The first block states
+//! P_0, which must be where the tool stands, and names every axis that the curve moves. The reference curve (0,0) (10,0)
+//! (30,24) (60,0) (90,−24) (110,0) (120,0) on knots 0⁴ 30 60 90 120⁴:
+//!
+//! ```text
+//! G1 X0. Y0. F1000.
+//! G06.2 P4 K0. X0. Y0.
+//! K0. X10. Y0.
+//! K0. X30. Y24.
+//! K0. X60. Y0.
+//! K30. X90. Y-24.
+//! K60. X110. Y0.
+//! K90. X120. Y0.
+//! K120.
+//! K120.
+//! K120.
+//! K120.
+//! ```
+//!
+//! Some files spell the degree, as P3 with four closing blocks. The closing blocks decide: as many as P are the order,
+//! one more is the degree, and a warning says so.
+//!
+//! **G06.1** goes through points: the block with the word holds the first point after where the tool stands, the others
+//! hold points alone. Its shape is the control's. The same word is another thing on a Fanuc 15i, where the first block
+//! holds a tangent.
+//!
+//! # Modal words
+//!
+//! | word | modal |
+//! |---|---|
+//! | G0 G1 G06.1 G06.2 | yes, one group; G06.2 is written for each curve all the same |
+//! | X Y Z A | a word left out stays; within G06.2 every moving axis stands on every block |
+//! | F | yes |
+//! | P | of its curve |
+//! | K, R | never |
+
+mod read;
+mod write;
+
+use super::{Dialect, Form, Motion};
+use crate::ir::ThroughKind;
+use crate::machine::Machine;
+use crate::machine::template::Template;
+use std::borrow::Cow;
+
+/// Mazak.
 pub const MAZAK: Dialect = Dialect {
     name: "mazak",
-    about: "",
-    motions: &[] as &[Motion],
-    naming: ("", |_| true),
-    write: |_, _| String::new(),
-    read: |_, _, _| Err(crate::diagnostic::Diagnostics::new()),
+    about: "Mazak Matrix and Smooth, EIA/ISO",
+    motions: &[
+        Motion { name: "g06.2", form: Form::Nurbs, about: "G06.2: control points, knots and weights" },
+        Motion { name: "linear", form: Form::Lines, about: "G1" },
+        Motion {
+            name: "g06.1",
+            form: Form::Through(ThroughKind::Fine),
+            about: "G06.1: fine spline through points",
+        },
+    ],
+    naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
+    write: write::write,
+    read: read::read,
 };
+
+/// The name stands in a comment: a parenthesis would end it, and % the tape.
+fn is_name(name: &str) -> bool {
+    let fits = |b: u8| (b' '..=b'~').contains(&b) && !matches!(b, b'(' | b')' | b'%');
+    (1..=32).contains(&name.len()) && name.trim() == name && name.bytes().all(fits)
+}
+
+/// Whether a line of the text is a block, which can have a number. Comments, the program's number and % are none.
+fn is_block(line: &str) -> bool {
+    !line.starts_with(['(', '%', 'O'])
+}
+
+/// The line of a tool call that does not stand alone: without an axis G43 moves Z by the offset on some controls, so it
+/// is written into the first rapid of Z.
+const OFFSET: &str = "G43 H{tool}";
+
+/// A machine whose tool calls do not end with [`OFFSET`], and whether those lines did.
+struct Offset<'m> {
+    machine: Cow<'m, Machine>,
+    /// In `tool`.
+    tool: bool,
+    /// In `tool_spindle`.
+    tool_spindle: bool,
+}
+
+impl<'m> Offset<'m> {
+    fn new(machine: &'m Machine) -> Offset<'m> {
+        let ends = |lines: &[Template]| lines.last().is_some_and(|line| line.0 == OFFSET) && 1 < lines.len();
+        let (tool, tool_spindle) = (ends(&machine.frame.tool), ends(&machine.frame.tool_spindle));
+        let mut without = Cow::Borrowed(machine);
+        if tool {
+            without.to_mut().frame.tool.pop();
+        }
+        if tool_spindle {
+            without.to_mut().frame.tool_spindle.pop();
+        }
+        Offset { machine: without, tool, tool_spindle }
+    }
+}

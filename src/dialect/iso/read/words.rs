@@ -1,0 +1,67 @@
+//! The first layer: words as written.
+
+use crate::decimal::{Decimal, read_decimal};
+use nom::branch::alt;
+use nom::bytes::complete::{take_while, take_while1};
+use nom::character::complete::{char, space0};
+use nom::combinator::recognize;
+use nom::error::{Error, ErrorKind};
+use nom::sequence::{delimited, terminated};
+use nom::{IResult, Parser};
+
+/// One word of a block.
+#[derive(Debug, PartialEq)]
+pub(super) enum Word<'t> {
+    /// `X30.`
+    Address(u8, Decimal),
+    /// `X1=30.`
+    Assignment(&'t str, Decimal),
+    /// `(FLUTE 1)`
+    Remark(&'t str),
+}
+
+/// `word = address | remark | assignment`
+pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
+    alt((address, remark, assignment)).parse(input)
+}
+
+/// `address = letter number`, where no `=` follows: `X1=10.` is axis X1
+#[inline]
+fn address(input: &str) -> IResult<&str, Word<'_>> {
+    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Alpha));
+    let letter = input.bytes().next().filter(u8::is_ascii_uppercase).ok_or_else(failed)?;
+    let (rest, value) = number(&input[1..])?;
+    if rest.starts_with('=') {
+        return Err(failed());
+    }
+    Ok((rest, Word::Address(letter, value)))
+}
+
+/// `number = [sign] ( digits ["." [digits]] | "." digits )`
+#[inline]
+fn number(input: &str) -> IResult<&str, Decimal> {
+    let failed = |_| nom::Err::Error(Error::new(input, ErrorKind::Digit));
+    let (value, length) = read_decimal(input.as_bytes(), false).map_err(failed)?;
+    Ok((&input[length..], value))
+}
+
+/// `remark = "(" { character - ")" } ")"`
+fn remark(input: &str) -> IResult<&str, Word<'_>> {
+    delimited(char('('), take_while(|c: char| c != ')'), char(')')).map(Word::Remark).parse(input)
+}
+
+/// `assignment = name "=" number`
+fn assignment(input: &str) -> IResult<&str, Word<'_>> {
+    (terminated(name, (space0, char('='), space0)), number)
+        .map(|(name, value)| Word::Assignment(name, value))
+        .parse(input)
+}
+
+/// `name = letter { letter | digit }`
+fn name(input: &str) -> IResult<&str, &str> {
+    recognize((
+        take_while1(|c: char| c.is_ascii_uppercase()),
+        take_while(|c: char| c.is_ascii_alphanumeric()),
+    ))
+    .parse(input)
+}
