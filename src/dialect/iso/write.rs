@@ -407,7 +407,7 @@ mod tests {
                 "G06.1 X1. Y1.\n", "X2. Y2.\n", "G1\n", "G0 X0. Y0. Z0. A0.\nG06.2 P2 K0. X0. A0.\nK0. X3. A5.\nK3.\nK3.\n",
                 "G0 X0.\nG06.2 K0. X0. R2.\nK0. X1.\nK0. X2. R3.\nK0. X3.\nK1. X4.\nK2.\nK2.\nK2.\nK2.\nG1\n",
             ]), 0..20)) {
-            let machine = machine("extends = \"mazak\"\n[axes]\nwraps = false\n[program]\nheader = []\nfooter = []\n");
+            let machine = machine("extends = \"mazak\"\n[axis.A]\nkind = \"linear\"\n[program]\nheader = []\nfooter = []\n");
             let start = "G0 X0. Y0. Z0. A0.\nG1 F5.\n";
             let text = format!("(START)\n{start}{}", words.concat());
             if let Ok(reading) = (machine.dialect.read)(&text, SourceId::INPUT, &machine) {
