@@ -97,6 +97,8 @@ struct Reader<'t, 'm> {
     run: Option<Run>,
     /// The greatest difference between a block's start and the tool, and the block.
     gap: Option<(Decimal, Span)>,
+    /// The first line that goes on without `~`.
+    unmarked: Option<Span>,
 }
 
 /// Reads a program.
@@ -108,6 +110,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         lines: Lines::new(text).peekable(),
         run: None,
         gap: None,
+        unmarked: None,
     };
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
@@ -148,7 +151,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
     }
     reader.flush();
-    reader.warn_of_gap();
+    reader.warn();
     let (header, footer) = (frame.header_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
     let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered };
@@ -172,10 +175,11 @@ impl<'t> Reader<'t, '_> {
         let mut at = start + keyword.len();
         loop {
             let goes_on = self.words(text, at, &mut block);
-            let continues =
-                goes_on || block.spline && self.lines.peek().is_some_and(|next| is_continuation(next.text));
-            if !continues {
-                break;
+            if !goes_on {
+                if !(block.spline && self.lines.peek().is_some_and(|next| is_continuation(next.text))) {
+                    break;
+                }
+                self.unmarked = self.unmarked.or(Some(self.assembler.span(at..at + text.len())));
             }
             let Some(next) = self.lines.next() else {
                 let end = at + text.len();
@@ -483,7 +487,18 @@ impl<'t> Reader<'t, '_> {
         }
     }
 
-    fn warn_of_gap(&mut self) {
+    /// Warns, once each, of what a control may take otherwise.
+    fn warn(&mut self) {
+        if let Some(span) = self.unmarked {
+            self.assembler.diagnostics.push(
+                Diagnostic::warning(
+                    "continuation-unmarked",
+                    "an SPL block goes on without `~`, as listings print it",
+                )
+                .at(span, "goes on in the next line")
+                .hint("a control wants `~` at the end of this line"),
+            );
+        }
         if let Some((gap, span)) = self.gap {
             let message = format!("SPL blocks start up to {gap} mm or degrees from where the tool is");
             self.assembler.diagnostics.push(
@@ -629,9 +644,9 @@ mod tests {
     #[test]
     fn published_blocks_close_within_a_micrometre() {
         let read = reading(FIGURE_6);
-        assert_eq!(warnings(&read), ["start-gap"]);
+        assert_eq!(warnings(&read), ["continuation-unmarked", "start-gap"]);
         // X of block 29: 175.069 − 0.0253894 − 0.0204697 + 0.874246 = 175.8973869, where 28 ends at 175.897.
-        assert!(read.warnings.0[0].message.contains("up to 0.0003869 mm"), "{:?}", read.warnings);
+        assert!(read.warnings.0[1].message.contains("up to 0.0003869 mm"), "{:?}", read.warnings);
         let [Written::Lines(_), Written::Polynomial(polynomial)] = curves(&read.value.decimals)[..] else {
             panic!()
         };
