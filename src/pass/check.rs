@@ -1,8 +1,10 @@
 //! What is left fits the machine: the only place where a [`Legal`] program is made, and writers take nothing else.
 
+use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::dialect::{Dialect, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Decimals, Step, Units, Written};
+use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written};
 use crate::machine::Machine;
 use crate::pass::limits;
 use crate::units::{Axis, DEGREES, Kind, MAX_AXES, Position};
@@ -27,7 +29,8 @@ const GREATEST: f64 = 99_999.999_9;
 /// Checks a program against a machine.
 ///
 /// # Errors
-/// The name is not one for this control; a coordinate is out of range; a rotary axis would wrap.
+/// The name is not one for this control; a curve has a form that the dialect has no word for; a
+/// coordinate is out of range; a rotary axis would wrap.
 pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Diagnostics> {
     let mut found = Diagnostics::new();
     if let Some(diagnostic) = name(&decimals.program.name, machine) {
@@ -35,6 +38,7 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
     }
     let mut reach = Reach::new();
     let mut worst_joint = 0.0f64;
+    let mut coefficient_digits = 0;
     let mut splines_move: Vec<Axis> = Vec::new();
     for located in &decimals.program.steps {
         match &located.step {
@@ -44,6 +48,10 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
                 }
             }
             Step::Cut(cut) => {
+                match form(&decimals, &cut.curve, machine.dialect) {
+                    Ok(needed) => coefficient_digits = coefficient_digits.max(needed),
+                    Err(refused) => found.push(refused.at(located.span, "")),
+                }
                 reach.curve(&decimals, &cut.curve);
                 let moved: Vec<usize> = match &cut.curve {
                     Written::Lines(_) => Vec::new(),
@@ -73,6 +81,13 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
             .hint("try it on the control first; a machine file with [spline] axes = [...] says that it is allowed"),
         );
     }
+    if CLOSING_DIGITS < coefficient_digits {
+        let message = format!(
+            "a coefficient has {coefficient_digits} digits when it is written so that every block starts exactly where \
+             the one before ended; the control keeps {CLOSING_DIGITS}"
+        );
+        found.push(Diagnostic::warning("coefficient-digits", message));
+    }
     if SMOOTH_JOINT < worst_joint {
         found.push(
             Diagnostic::warning("corner", format!("spline blocks meet at up to {worst_joint:.2} degrees"))
@@ -90,6 +105,91 @@ pub fn name(name: &str, machine: &Machine) -> Option<Diagnostic> {
         Diagnostic::error("name-not-allowed", format!("`{name}` cannot be a program's name on this control"))
             .hint(format!("a name is {rule}"))
     })
+}
+
+/// How many digits a control keeps of a coefficient of blocks that state their start through them (Heidenhain SPL).
+const CLOSING_DIGITS: usize = 9;
+
+/// How many axes such a block moves (Heidenhain SPL: two to five).
+const CLOSING_AXES: usize = 5;
+
+/// How many digits the closing coefficients of a curve have, or why the dialect cannot write it: none of its motions
+/// has the form, or a block has no such coefficients.
+fn form(decimals: &Decimals, curve: &Written, dialect: &Dialect) -> Result<usize, Diagnostic> {
+    let (found, what) = match curve {
+        Written::Lines(_) => (dialect.motion_of(Form::Lines), "straight lines"),
+        Written::Polynomial(_) => {
+            let polynomial =
+                dialect.motions.iter().find(|motion| matches!(motion.form, Form::Polynomial { .. }));
+            (polynomial, "polynomial blocks")
+        }
+        Written::Nurbs(_) => (dialect.motion_of(Form::Nurbs), "B-splines"),
+        Written::Through(kind, _) => {
+            (dialect.motion_of(Form::Through(*kind)), "splines through points of this kind")
+        }
+    };
+    let Some(motion) = found else {
+        let message =
+            format!("{} has no word for {what}; its motions are {}", dialect.name, dialect.motion_names());
+        return Err(Diagnostic::error("form-not-in-dialect", message));
+    };
+    let (Written::Polynomial(polynomial), Form::Polynomial { closing: true }) = (curve, motion.form) else {
+        return Ok(0);
+    };
+    let mut digits = 0;
+    let mut start = polynomial.start;
+    for block in &polynomial.blocks {
+        let mut moved = 0;
+        for (i, start) in start.iter().enumerate().take(decimals.program.axes.count()) {
+            let Some(k) = closing_coefficients(block, i, *start, decimals.digits[i]) else {
+                let message = format!("{} writes cubics over a parameter of length 1 only", motion.name);
+                return Err(Diagnostic::error("form-not-in-dialect", message));
+            };
+            digits = k.iter().fold(digits, |digits, k| digits.max(significant_digits(*k)));
+            moved += usize::from(k.iter().any(|k| !k.is_zero()));
+        }
+        if CLOSING_AXES < moved {
+            let message = format!("{} moves at most {CLOSING_AXES} axes at once", motion.name);
+            return Err(Diagnostic::error("axes-too-many", message));
+        }
+        start = block.end;
+    }
+    Ok(digits)
+}
+
+/// The digits of a number from the first that is not zero to the last.
+fn significant_digits(value: Decimal) -> usize {
+    // In units of its own last decimal every decimal is whole.
+    let mut units = value.units(value.digits()).unwrap_or_default().unsigned_abs();
+    while units != 0 && units.is_multiple_of(10) {
+        units /= 10;
+    }
+    std::iter::successors(Some(units), |units| Some(units / 10)).take_while(|units| *units != 0).count()
+}
+
+/// K3, K2, K1 of one axis of a block that states its start through its coefficients: f = K3 t³ + K2 t² + K1 t + end, t
+/// from 1 to 0.
+///
+/// ```text
+/// K3 = −a₃          K2 = a₂ + 3a₃          K1 = start − end − K2 − K3
+/// ```
+///
+/// None where the block is no cubic over a parameter of length 1, or where a number is too large to be held.
+pub fn closing_coefficients(
+    block: &PolynomialBlock,
+    axis: usize,
+    start: i64,
+    digits: u8,
+) -> Option<[Decimal; 3]> {
+    let [a2, a3, a4, a5] = block.coefficients[axis];
+    if block.pl != Decimal::new(1, 0) || !a4.is_zero() || !a5.is_zero() {
+        return None;
+    }
+    let k3 = a3.times(-1)?;
+    let k2 = a3.times(3)?.plus(a2)?;
+    let k1 =
+        Decimal::new(start, digits).minus(Decimal::new(block.end[axis], digits))?.minus(k2)?.minus(k3)?;
+    Some([k3, k2, k1])
 }
 
 /// The least and the greatest of every axis.
@@ -234,4 +334,62 @@ fn joint_angle(decimals: &Decimals, curve: &Written) -> f64 {
         start = block.end;
     }
     worst
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::{Cut, Located, Program, Role, ThroughKind, WrittenPoints, WrittenPolynomial};
+    use crate::source::{SourceId, Span};
+
+    fn ids(curve: Written) -> Vec<&'static str> {
+        let machine = Machine::built_in("heidenhain").unwrap();
+        let step = Step::Cut(Cut { feed: Some(Decimal::new(100, 0)), role: Role::Path, curve });
+        let steps = vec![Located { step, span: Span::new(SourceId::INPUT, 0..0) }];
+        let program = Program { name: "P".to_owned(), axes: machine.axes, steps };
+        let decimals = Decimals { program, digits: machine.axis_digits() };
+        match check(decimals, &machine) {
+            Ok(legal) => legal.warnings.0.iter().map(|d| d.id).collect(),
+            Err(errors) => errors.0.iter().map(|d| d.id).collect(),
+        }
+    }
+
+    fn polynomial(pl: Decimal, a2: Decimal, a4: Decimal) -> Written {
+        let mut coefficients = [[Decimal::ZERO; 4]; MAX_AXES];
+        coefficients[0] = [a2, Decimal::ZERO, a4, Decimal::ZERO];
+        let block = PolynomialBlock { pl, end: [10_000, 0, 0, 0, 0, 0], coefficients, line: 0 };
+        Written::Polynomial(WrittenPolynomial { start: [0; MAX_AXES], blocks: vec![block] })
+    }
+
+    #[test]
+    fn a_form_that_the_dialect_has_no_word_for_is_refused() {
+        let points = WrittenPoints {
+            start: [0; MAX_AXES],
+            stride: 4,
+            units: vec![10_000, 0, 0, 0],
+            lines: Vec::new(),
+        };
+        assert_eq!(ids(Written::Lines(points.clone())), [""; 0]);
+        assert_eq!(ids(Written::Through(ThroughKind::Akima, points)), ["form-not-in-dialect"]);
+        let (zero, one) = (Decimal::ZERO, Decimal::new(1, 0));
+        assert_eq!(ids(polynomial(one, zero, zero)), [""; 0]);
+        assert_eq!(ids(polynomial(Decimal::new(2, 0), zero, zero)), ["form-not-in-dialect"]);
+        assert_eq!(ids(polynomial(one, zero, one)), ["form-not-in-dialect"]);
+        assert_eq!(ids(polynomial(one, Decimal::new(123_456_789, 8), zero)), [""; 0]);
+        assert_eq!(ids(polynomial(one, Decimal::new(1_234_567_891, 9), zero)), ["coefficient-digits"]);
+    }
+
+    #[test]
+    fn coefficients_that_state_the_start_follow_from_those_that_follow_it() {
+        // Block 2 of the reference curve: y from 0 to 14 with a₂ = 36, a₃ = −22.
+        let Written::Polynomial(WrittenPolynomial { mut blocks, .. }) =
+            polynomial(Decimal::new(1, 0), Decimal::ZERO, Decimal::ZERO)
+        else {
+            panic!()
+        };
+        blocks[0].coefficients[1] = [Decimal::new(36, 0), Decimal::new(-22, 0), Decimal::ZERO, Decimal::ZERO];
+        blocks[0].end[1] = 140_000;
+        let k = closing_coefficients(&blocks[0], 1, 0, 4).unwrap();
+        assert_eq!(k, [Decimal::new(22, 0), Decimal::new(-30, 0), Decimal::new(-6, 0)]);
+    }
 }

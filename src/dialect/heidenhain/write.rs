@@ -1,0 +1,270 @@
+//! Spells a legal program in Klartext. Every block has a number, comments too; a block that goes on in the next line
+//! ends with `~`, and the lines that continue it have none.
+
+use crate::decimal::{Decimal, Spelling, write_units};
+use crate::dialect::block::expected_size;
+use crate::dialect::modal::Modal;
+use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written, WrittenPoints, WrittenPolynomial};
+use crate::machine::Machine;
+use crate::pass::check::{Legal, closing_coefficients};
+
+/// The decimals of a K, behind its one digit before the point.
+const MANTISSA_DIGITS: u8 = 8;
+
+/// SPL moves two to five axes: a second one is named where only one moves.
+const FEWEST_AXES: usize = 2;
+
+/// The text of a program.
+pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
+    let decimals = legal.decimals();
+    let size = expected_size(decimals);
+    let text = &machine.text;
+    let spelling = Spelling { point_always: text.point_always, sign_always: text.sign_always };
+    let mut writer = Writer { modal: Modal::new(machine, size), decimals, spelling, goes_on: false };
+    writer.program();
+    String::from_utf8(writer.modal.out).unwrap_or_default()
+}
+
+struct Writer<'a> {
+    modal: Modal<'a>,
+    decimals: &'a Decimals,
+    spelling: Spelling,
+    /// Whether the last line ended with `~`.
+    goes_on: bool,
+}
+
+impl Writer<'_> {
+    fn begin(&mut self) {
+        if let Some(number) = self.modal.take_number() {
+            self.modal.text(itoa::Buffer::new().format(number));
+            self.modal.out.push(b' ');
+        }
+    }
+
+    /// A line of fixed words.
+    fn block(&mut self, text: &str) {
+        if !self.goes_on {
+            self.begin();
+        }
+        self.modal.text(text);
+        self.modal.end();
+        self.goes_on = text.ends_with('~');
+    }
+
+    fn program(&mut self) {
+        let machine = self.modal.machine;
+        let program = &self.decimals.program;
+        for line in &machine.frame.header {
+            self.block(&line.fill(&[("name", &program.name)]));
+        }
+        let mut at = 0;
+        while let Some(located) = program.steps.get(at) {
+            let next = program.steps.get(at + 1).map(|located| &located.step);
+            let (lines, covered) = self.modal.frame_lines(&located.step, next);
+            for line in lines {
+                self.block(&line);
+            }
+            at += covered;
+            self.goes_on = false;
+            match &located.step {
+                Step::Tool(_) | Step::Spindle(_) => {}
+                Step::Comment(text) => {
+                    self.begin();
+                    self.modal.text("; ");
+                    self.modal.text(text);
+                    self.modal.end();
+                    self.modal.forget();
+                }
+                Step::Rapid(targets) => self.rapid(targets),
+                Step::Cut(cut) => match &cut.curve {
+                    Written::Lines(points) => self.lines(points, cut.feed),
+                    Written::Polynomial(polynomial) => self.polynomial(polynomial, cut.feed),
+                    // No motion of this dialect has these forms, so that `check` lets none pass.
+                    Written::Nurbs(_) | Written::Through(..) => {}
+                },
+            }
+        }
+        for line in &machine.frame.footer {
+            self.block(&line.fill(&[("name", &program.name)]));
+        }
+    }
+
+    fn feed(&mut self, feed: Option<Decimal>) {
+        if let Some(value) = feed
+            && self.modal.feed != feed
+        {
+            // F, as a number that is never negative, has no sign.
+            let spelling = Spelling { sign_always: false, ..self.spelling };
+            self.modal.out.push(b'F');
+            value.write(&mut self.modal.out, spelling);
+            self.modal.out.push(b' ');
+            self.modal.feed = feed;
+        }
+    }
+
+    #[inline]
+    fn axis(&mut self, i: usize, units: i64) {
+        self.modal.text(self.modal.machine.axes.name(i).as_str());
+        write_units(&mut self.modal.out, units, self.decimals.digits[i], self.spelling);
+        self.modal.out.push(b' ');
+    }
+
+    fn rapid(&mut self, targets: &[(usize, Decimal)]) {
+        self.begin();
+        self.modal.text("L ");
+        for (axis, to) in targets {
+            let units = to.units(self.decimals.digits[*axis]).unwrap_or_default();
+            self.axis(*axis, units);
+            self.modal.position[*axis] = Some(units);
+        }
+        self.modal.text("R0 FMAX");
+        self.modal.end();
+    }
+
+    fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
+        for point in points.points() {
+            self.begin();
+            self.modal.text("L ");
+            let mut moved = false;
+            for i in 0..points.stride {
+                if self.modal.moves(i, &point) {
+                    self.axis(i, point[i]);
+                    moved = true;
+                }
+            }
+            if !moved {
+                self.axis(0, point[0]);
+            }
+            self.feed(feed);
+            self.modal.reached(&point);
+            self.modal.end();
+        }
+    }
+
+    fn polynomial(&mut self, polynomial: &WrittenPolynomial, feed: Option<Decimal>) {
+        let mut start = polynomial.start;
+        for block in &polynomial.blocks {
+            self.spline(block, &start, feed);
+            start = block.end;
+        }
+    }
+
+    fn spline(&mut self, block: &PolynomialBlock, start: &Units, feed: Option<Decimal>) {
+        let named = self.named(block, start);
+        self.begin();
+        self.modal.text("SPL ");
+        for &i in &named {
+            self.axis(i, block.end[i]);
+        }
+        self.modal.text("~\n");
+        for (n, &i) in named.iter().enumerate() {
+            // `check` lets no block pass without them.
+            let k = closing_coefficients(block, i, start[i], self.decimals.digits[i]).unwrap_or_default();
+            let name = self.modal.machine.axes.name(i);
+            self.modal.out.push(b' ');
+            for (power, k) in [(b'3', k[0]), (b'2', k[1]), (b'1', k[2])] {
+                self.modal.out.extend_from_slice(&[b' ', b'K', power]);
+                self.modal.text(name.as_str());
+                write_coefficient(&mut self.modal.out, k, self.spelling);
+            }
+            self.modal.out.push(b' ');
+            if n + 1 < named.len() {
+                self.modal.text("~\n");
+            }
+        }
+        self.feed(feed);
+        self.modal.reached(&block.end);
+        self.modal.end();
+    }
+
+    /// The axes that a block names: those that it moves or whose place was not said since the last comment.
+    fn named(&self, block: &PolynomialBlock, start: &Units) -> Vec<usize> {
+        let axes = self.modal.machine.axes.count();
+        let moves = |i: &usize| {
+            let (i, k) = (*i, &block.coefficients[*i]);
+            self.modal.moves(i, &block.end) || block.end[i] != start[i] || k.iter().any(|a| !a.is_zero())
+        };
+        let mut named: Vec<usize> = (0..axes).filter(moves).collect();
+        for i in 0..axes {
+            if named.len() < FEWEST_AXES && !named.contains(&i) {
+                named.push(i);
+            }
+        }
+        named.sort_unstable();
+        named
+    }
+}
+
+/// A K: as it is where it fits one digit before and eight behind the point, otherwise d.dddddddd E±n.
+fn write_coefficient(out: &mut Vec<u8>, k: Decimal, spelling: Spelling) {
+    if k.digits() <= MANTISSA_DIGITS
+        && k.compare(Decimal::new(10, 0)).is_lt()
+        && k.compare(Decimal::new(-10, 0)).is_gt()
+    {
+        return k.write(out, spelling);
+    }
+    let (mantissa, exponent) = scientific(k);
+    mantissa.write(out, spelling);
+    if mantissa.digits() == 0 {
+        out.extend_from_slice(if spelling.point_always { b"0" } else { b".0" });
+    }
+    out.extend_from_slice(if exponent < 0 { b"E-" } else { b"E+" });
+    out.extend_from_slice(itoa::Buffer::new().format(exponent.unsigned_abs()).as_bytes());
+}
+
+/// `value` = mantissa · 10^exponent with one digit before the point.
+fn scientific(value: Decimal) -> (Decimal, i32) {
+    let digits = value.digits();
+    // In units of its own last decimal every decimal is whole.
+    let mut units = value.units(digits).unwrap_or_default();
+    let mut exponent = -i32::from(digits);
+    while units != 0 && units % 10 == 0 {
+        units /= 10;
+        exponent += 1;
+    }
+    let mut places = 0;
+    let mut rest = units / 10;
+    while rest != 0 {
+        rest /= 10;
+        places += 1;
+    }
+    (Decimal::new(units, places), exponent + i32::from(places))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spelled(units: i64, digits: u8) -> String {
+        let mut out = Vec::new();
+        write_coefficient(
+            &mut out,
+            Decimal::new(units, digits),
+            Spelling { point_always: false, sign_always: true },
+        );
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn coefficients_have_nine_digits_and_an_exponent_from_ten_on() {
+        assert_eq!(spelled(0, 0), "+0");
+        assert_eq!(spelled(-6, 0), "-6");
+        assert_eq!(spelled(-343_145_751, 8), "-3.43145751");
+        assert_eq!(spelled(999_999_999, 8), "+9.99999999");
+        assert_eq!(spelled(10, 0), "+1.0E+1");
+        assert_eq!(spelled(-30, 0), "-3.0E+1");
+        assert_eq!(spelled(165_685_425, 7), "+1.65685425E+1");
+        assert_eq!(spelled(1, 8), "+0.00000001");
+        assert_eq!(spelled(-186_078, 10), "-1.86078E-5");
+        assert_eq!(spelled(12_345_678_000, 4), "+1.2345678E+6");
+    }
+
+    #[test]
+    fn a_point_is_always_written_where_the_machine_asks() {
+        let mut out = Vec::new();
+        let spelling = Spelling { point_always: true, sign_always: false };
+        write_coefficient(&mut out, Decimal::new(30, 0), spelling);
+        write_coefficient(&mut out, Decimal::new(-6, 0), spelling);
+        assert_eq!(out, b"3.0E+1-6.");
+    }
+}
