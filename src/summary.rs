@@ -15,7 +15,7 @@ pub struct Summary {
     pub machine: String,
     /// The motion of cutting pieces, where it was chosen.
     pub motion: Option<String>,
-    /// Lines of text.
+    /// Blocks of the program, comments included.
     pub blocks: usize,
     /// Blocks that cut; none where nothing was verified.
     pub path_blocks: Option<usize>,
@@ -85,7 +85,8 @@ impl Summary {
             name: intent.program.name.clone(),
             machine: machine.to_owned(),
             motion: motion.map(str::to_owned),
-            blocks: text.lines().count(),
+            // A continued block goes on in indented lines.
+            blocks: text.lines().filter(|line| !line.starts_with(' ')).count(),
             path_blocks: report.map(|r| r.path_blocks),
             cutting_length: report.map(|r| r.cutting_length),
             tolerance,
