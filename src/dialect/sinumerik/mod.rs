@@ -50,6 +50,7 @@
 //! | PL, PW, PO[…] | never |
 
 mod read;
+mod words;
 mod write;
 
 use super::{Dialect, Form, Motion};

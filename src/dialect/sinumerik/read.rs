@@ -2,7 +2,8 @@
 //!
 //! A word that is not understood is an error at its place.
 
-use crate::decimal::{Decimal, power_of_ten, read_decimal};
+use super::words::{Word, word};
+use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
@@ -16,118 +17,7 @@ use crate::pass::check::moving;
 use crate::source::{SourceId, Span};
 use crate::units::{Kind, MAX_AXES};
 use crate::verify::to_nurbs;
-use nom::branch::alt;
-use nom::bytes::complete::{tag, take_while, take_while1};
-use nom::character::complete::{char, space0};
-use nom::combinator::{opt, recognize};
-use nom::error::{Error, ErrorKind};
-use nom::multi::separated_list1;
-use nom::sequence::{delimited, preceded, terminated};
-use nom::{IResult, Parser};
 use std::ops::Range;
-
-/// One word of a block.
-#[derive(Debug, PartialEq)]
-enum Word<'t> {
-    /// `X30`, `X1=10`, `PL=30`
-    Address(&'t str, Decimal),
-    /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`
-    Polynomial(&'t str, Vec<Decimal>),
-    /// `SPLINEPATH(1,X,Y)`
-    Call(&'t str, &'t str),
-    /// `BSPLINE`
-    Keyword(&'t str),
-}
-
-/// `word = address | polynomial | assignment | call | keyword`
-fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((address, polynomial, assignment, call, keyword)).parse(input)
-}
-
-/// `address = letter number`, where no `=` follows: `X1=10` is axis X1
-#[inline]
-fn address(input: &str) -> IResult<&str, Word<'_>> {
-    let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
-    let bytes = input.as_bytes();
-    if !bytes.first().is_some_and(u8::is_ascii_alphabetic) {
-        return failed();
-    }
-    let (rest, value) = number(&input[1..])?;
-    if rest.starts_with('=') {
-        return failed();
-    }
-    Ok((rest, Word::Address(&input[..1], value)))
-}
-
-/// `number = [sign] ( digits ["." [digits]] | "." digits ) ["EX" [sign] digits]`
-#[inline]
-fn number(input: &str) -> IResult<&str, Decimal> {
-    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
-    let (value, length) = read_decimal(input.as_bytes(), false).map_err(|_| failed())?;
-    let rest = &input[length..];
-    if !rest.starts_with("EX") {
-        return Ok((rest, value));
-    }
-    let (rest, exponent) =
-        preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
-            .parse(rest)?;
-    let exponent: i32 = exponent.parse().map_err(|_| failed())?;
-    scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
-}
-
-/// value · 10^exponent, where it can be held.
-fn scaled(mut value: Decimal, exponent: i32) -> Option<Decimal> {
-    for _ in 0..exponent.clamp(0, 30) {
-        value = value.times(10)?;
-    }
-    for _ in 0..(-exponent).clamp(0, 30) {
-        let digits = value.digits() + 1;
-        value = Decimal::new(value.units(digits - 1)?, digits);
-        if crate::decimal::MAX_DIGITS < digits {
-            return None;
-        }
-    }
-    Some(value)
-}
-
-/// `name = letter { letter | digit | "_" }`
-fn name(input: &str) -> IResult<&str, &str> {
-    recognize((
-        take_while1(|c: char| c.is_ascii_alphabetic() || c == '_'),
-        take_while(|c: char| c.is_ascii_alphanumeric() || c == '_'),
-    ))
-    .parse(input)
-}
-
-/// `list = "(" number { "," number } ")"`
-fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
-    let item = delimited(space0, number, space0);
-    delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
-}
-
-/// `polynomial = "PO[" name "]" "=" list | name "=" "PO" list`
-fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
-    let old = (delimited(tag("PO["), name, char(']')), preceded((space0, char('='), space0), list));
-    let new = (terminated(name, (space0, char('='), space0, tag("PO"))), list);
-    alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
-}
-
-/// `assignment = name "=" number`
-fn assignment(input: &str) -> IResult<&str, Word<'_>> {
-    let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
-    Ok((rest, Word::Address(name, value)))
-}
-
-/// `call = name "(" arguments ")"`
-fn call(input: &str) -> IResult<&str, Word<'_>> {
-    let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
-    (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
-}
-
-/// `keyword = name`
-fn keyword(input: &str) -> IResult<&str, Word<'_>> {
-    name.map(Word::Keyword).parse(input)
-}
 
 /// G group 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,11 +30,9 @@ enum Motion {
     Through(ThroughKind),
 }
 
-/// Codes that state what the IR assumes anyway.
-const STATE_CODES: [&str; 17] = [
-    "G17", "G40", "G54", "G55", "G56", "G57", "G500", "G60", "G64", "G601", "G642", "G71", "G90", "G94",
-    "SOFT", "COMPOF", "TRAFOOF",
-];
+/// Codes that state what the IR assumes anyway. Another work offset than G54, or smoothing, is another path.
+const STATE_CODES: [&str; 12] =
+    ["G17", "G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
 
 /// What one block says.
 struct Block {
@@ -154,6 +42,7 @@ struct Block {
     has_polynomial: bool,
     pl: Option<Decimal>,
     pw: Option<Decimal>,
+    feed: Option<Decimal>,
     starts_spline: bool,
 }
 
@@ -263,6 +152,7 @@ impl Reader<'_> {
             has_polynomial: false,
             pl: None,
             pw: None,
+            feed: None,
             starts_spline: false,
         };
         let mut rest = code.trim_start();
@@ -283,6 +173,9 @@ impl Reader<'_> {
         }
         if block.starts_spline {
             self.flush();
+        }
+        if let Some(feed) = block.feed {
+            self.set_feed(feed, span);
         }
         self.moved(&block, line, span);
     }
@@ -377,10 +270,8 @@ impl Reader<'_> {
             ("F", _) => {
                 if value.compare(Decimal::ZERO).is_le() {
                     self.assembler.error("feed-range", "the feed must be greater than zero", range);
-                } else if self.assembler.feed != Some(value) {
-                    // A run has one feed; a spline keeps the one it starts with.
-                    self.flush_lines_only();
-                    self.assembler.feed = Some(value);
+                } else {
+                    block.feed = Some(value);
                 }
             }
             ("PL", _) => block.pl = Some(value),
@@ -427,11 +318,20 @@ impl Reader<'_> {
         }
     }
 
-    /// A polynomial run ends where the feed changes; a spline does not.
-    fn flush_lines_only(&mut self) {
-        if self.run.as_ref().is_some_and(|run| run.motion == Motion::Poly) {
-            self.flush();
+    /// The feed of a block holds from its own move on. A new one starts a new run of polynomial blocks; a spline is one
+    /// curve with one feed.
+    fn set_feed(&mut self, feed: Decimal, span: Span) {
+        if self.assembler.feed == Some(feed) {
+            return;
         }
+        match self.run.as_ref().map(|run| run.motion) {
+            Some(Motion::Bspline | Motion::Through(_)) => {
+                let whole = span.start as usize..span.end as usize;
+                self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
+            }
+            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line) | None => self.flush(),
+        }
+        self.assembler.feed = Some(feed);
     }
 
     /// The move that a block makes.
@@ -668,3 +568,6 @@ fn linear_in_parameter(decimals: &Decimals, curve: &Written, axes: &[usize]) -> 
         }),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,149 @@
+//! The words of a Sinumerik block, as written. Each function carries its production's name.
+
+use crate::decimal::{Decimal, read_decimal};
+use nom::branch::alt;
+use nom::bytes::complete::{tag, take_while, take_while1};
+use nom::character::complete::{char, space0};
+use nom::combinator::{opt, recognize};
+use nom::error::{Error, ErrorKind};
+use nom::multi::separated_list1;
+use nom::sequence::{delimited, preceded, terminated};
+use nom::{IResult, Parser};
+
+/// One word of a block.
+#[derive(Debug, PartialEq)]
+pub(super) enum Word<'t> {
+    /// `X30`, `X1=10`, `PL=30`
+    Address(&'t str, Decimal),
+    /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`
+    Polynomial(&'t str, Vec<Decimal>),
+    /// `SPLINEPATH(1,X,Y)`
+    Call(&'t str, &'t str),
+    /// `BSPLINE`
+    Keyword(&'t str),
+}
+
+/// `word = address | polynomial | assignment | call | keyword`
+pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
+    alt((address, polynomial, assignment, call, keyword)).parse(input)
+}
+
+/// `address = letter number`, where no `=` follows: `X1=10` is axis X1
+#[inline]
+fn address(input: &str) -> IResult<&str, Word<'_>> {
+    let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
+    let bytes = input.as_bytes();
+    if !bytes.first().is_some_and(u8::is_ascii_alphabetic) {
+        return failed();
+    }
+    let (rest, value) = number(&input[1..])?;
+    if rest.starts_with('=') {
+        return failed();
+    }
+    Ok((rest, Word::Address(&input[..1], value)))
+}
+
+/// `number = [sign] ( digits ["." [digits]] | "." digits ) ["EX" [sign] digits]`
+#[inline]
+fn number(input: &str) -> IResult<&str, Decimal> {
+    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
+    let (value, length) = read_decimal(input.as_bytes(), false).map_err(|_| failed())?;
+    let rest = &input[length..];
+    if !rest.starts_with("EX") {
+        return Ok((rest, value));
+    }
+    let (rest, exponent) =
+        preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
+            .parse(rest)?;
+    let exponent: i32 = exponent.parse().map_err(|_| failed())?;
+    scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
+}
+
+/// value · 10^exponent, where it can be held.
+fn scaled(mut value: Decimal, exponent: i32) -> Option<Decimal> {
+    for _ in 0..exponent.clamp(0, 30) {
+        value = value.times(10)?;
+    }
+    for _ in 0..(-exponent).clamp(0, 30) {
+        let digits = value.digits() + 1;
+        value = Decimal::new(value.units(digits - 1)?, digits);
+        if crate::decimal::MAX_DIGITS < digits {
+            return None;
+        }
+    }
+    Some(value)
+}
+
+/// `name = letter { letter | digit | "_" }`
+fn name(input: &str) -> IResult<&str, &str> {
+    recognize((
+        take_while1(|c: char| c.is_ascii_alphabetic() || c == '_'),
+        take_while(|c: char| c.is_ascii_alphanumeric() || c == '_'),
+    ))
+    .parse(input)
+}
+
+/// `list = "(" number { "," number } ")"`
+fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
+    let item = delimited(space0, number, space0);
+    delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
+}
+
+/// `polynomial = "PO[" name "]" "=" list | name "=" "PO" list`
+fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
+    let old = (delimited(tag("PO["), name, char(']')), preceded((space0, char('='), space0), list));
+    let new = (terminated(name, (space0, char('='), space0, tag("PO"))), list);
+    alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
+}
+
+/// `assignment = name "=" number`
+fn assignment(input: &str) -> IResult<&str, Word<'_>> {
+    let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
+    Ok((rest, Word::Address(name, value)))
+}
+
+/// `call = name "(" arguments ")"`
+fn call(input: &str) -> IResult<&str, Word<'_>> {
+    let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
+    (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
+}
+
+/// `keyword = name`
+fn keyword(input: &str) -> IResult<&str, Word<'_>> {
+    name.map(Word::Keyword).parse(input)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(text: &str) -> Word<'_> {
+        let (rest, word) = word(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(rest, "", "{text}");
+        word
+    }
+
+    #[test]
+    fn each_kind_of_word() {
+        let n = |units, digits| Decimal::new(units, digits);
+        assert_eq!(one("X-.25"), Word::Address("X", n(-25, 2)));
+        assert_eq!(one("X1=10"), Word::Address("X1", n(10, 0)));
+        assert_eq!(one("X=10."), Word::Address("X", n(10, 0)));
+        assert_eq!(one("PL=2.78157"), Word::Address("PL", n(278_157, 5)));
+        assert_eq!(
+            one("PO[X]=(30, 0.36,-0.022)"),
+            Word::Polynomial("X", vec![n(30, 0), n(36, 2), n(-22, 3)])
+        );
+        assert_eq!(one("X=PO(30,1)"), Word::Polynomial("X", vec![n(30, 0), n(1, 0)]));
+        assert_eq!(one("SPLINEPATH(1,X,Y)"), Word::Call("SPLINEPATH", "1,X,Y"));
+        assert_eq!(one("BSPLINE"), Word::Keyword("BSPLINE"));
+        assert_eq!(one("X=-.1EX-3"), Word::Address("X", n(-1, 4)));
+    }
+
+    #[test]
+    fn what_is_no_word_is_refused() {
+        for text in ["=3", "(3)", "[", "\u{e4}"] {
+            assert!(word(text).is_err(), "{text}");
+        }
+    }
+}
