@@ -8,6 +8,7 @@
 //! | `roundtrip` | what is written reads back to the same text |
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
+//! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
@@ -15,6 +16,7 @@ mod cli;
 mod damage;
 mod errors;
 mod golden;
+mod oracle;
 mod paper;
 mod robust;
 mod roundtrip;
