@@ -138,7 +138,16 @@ pub fn verify(
                 })?;
             }
             Step::Cut(Cut { feed, role, curve }) => {
+                let place = cursor.here();
                 let found = cursor.cut(curve, *feed, tolerance, &mut ideal)?;
+                if !(found.deviation.mm <= tolerance) {
+                    let message = format!(
+                        "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
+                        found.deviation.mm
+                    );
+                    let diagnostic = Diagnostic::refusal("deviation-too-large", message);
+                    return Err(place.map_or(diagnostic.clone(), |span| diagnostic.at(span, "")).into());
+                }
                 report.deviation = report.deviation.max(found.deviation);
                 report.status = report.status.max(found.status);
                 if let Some(from_ideal) = found.from_ideal {
@@ -156,16 +165,6 @@ pub fn verify(
     if let Some(left) = cursor.step() {
         let diagnostic = Diagnostic::refusal("more-than-asked", "the program goes on after what was asked");
         return Err(diagnostic.at(cursor.place(left), "").into());
-    }
-    if !(report.deviation.mm <= tolerance) {
-        return Err(Diagnostic::refusal(
-            "deviation-too-large",
-            format!(
-                "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
-                report.deviation.mm
-            ),
-        )
-        .into());
     }
     Ok(report)
 }
@@ -230,6 +229,12 @@ impl<'p> Cursor<'p> {
                 located.span
             }
         }
+    }
+
+    /// The place of what comes next, remarks aside.
+    fn here(&mut self) -> Option<Span> {
+        self.skip_comments();
+        self.step().map(|located| self.place(located))
     }
 
     /// The place of a line of the text, counted from 1.

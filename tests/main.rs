@@ -9,6 +9,7 @@
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
+//! | `readme` | the README's commands |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
@@ -18,6 +19,7 @@ mod errors;
 mod golden;
 mod oracle;
 mod paper;
+mod readme;
 mod robust;
 mod roundtrip;
 mod support;

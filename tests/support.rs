@@ -37,7 +37,7 @@ pub(crate) const CUTTERS: &[(&str, &str)] = &[
 pub(crate) fn input(cutter: &str, interpolation: &str) -> String {
     format!(
         "name = \"CONE10\"\n[cutter]\n{cutter}\n[interpolation]\n{interpolation}\n\
-         [process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\nspindle = 3000\n"
+         [process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 500 }}\nspindle = 3000\n"
     )
 }
 

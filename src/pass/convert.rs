@@ -9,8 +9,9 @@ use crate::ir::{Curve, Cut, Located, Polyline, Program, Role, Step};
 use crate::machine::Machine;
 use crate::units::{Axes, Kind, Position};
 
-/// Direction changes below this are none: a fit's joints agree to 1e-9, and knots have six digits.
-const SMOOTH: f64 = 1.0e-6;
+/// Direction changes below this are none: a fit's joints agree to some 1e-12, and over spans of some metres the joint
+/// of a double knot moves by no more than 1e-6 mm.
+const SMOOTH: f64 = 1.0e-9;
 
 /// The program with every path in `form`. Approaches stay lines.
 ///
@@ -47,8 +48,8 @@ fn to_form(curve: Curve, form: Form, axes: &Axes, machine: &Machine) -> Result<C
             Ok(Curve::Through(kind, line))
         }
         (Curve::Lines(line), Form::Polynomial { .. }) => Ok(Curve::Polynomial(segments(&line))),
-        (Curve::Lines(line), Form::Nurbs) => spline(segments(&line), axes, machine).map(Curve::Nurbs),
-        (Curve::Polynomial(pieces), Form::Nurbs) => spline(pieces, axes, machine).map(Curve::Nurbs),
+        (Curve::Lines(line), Form::Nurbs) => spline(segments(&line), false, axes, machine).map(Curve::Nurbs),
+        (Curve::Polynomial(pieces), Form::Nurbs) => spline(pieces, true, axes, machine).map(Curve::Nurbs),
         (Curve::Nurbs(nurbs), Form::Nurbs) => Ok(Curve::Nurbs(nurbs)),
         (Curve::Nurbs(nurbs), Form::Polynomial { .. }) if nurbs.is_polynomial() => {
             Ok(Curve::Polynomial(nurbs.beziers().map(|(piece, _)| piece).collect()))
@@ -74,11 +75,12 @@ fn segments(line: &Polyline) -> Vec<Bezier> {
 /// One cubic B-spline through pieces, its knots in decimals.
 ///
 /// Where two pieces meet in one direction the spans are made as long as their end derivatives, so that the derivative
-/// is continuous and the joint needs a double knot only; at corners it is triple. Only ratios of knots count: the
+/// is continuous and the joint needs a double knot only; at corners, and between lines, whose points are asked for as
+/// they are, it is triple. Only ratios of knots count: the
 /// first span is as long as its path in mm, and everything is scaled up where a span would be shorter than 1. Knots
 /// are then chosen on the control's decimals, and the knots that bring the spline to the least number of blocks are
 /// inserted there, so that rounding moves none of them.
-fn spline(pieces: Vec<Bezier>, axes: &Axes, machine: &Machine) -> Result<Nurbs, String> {
+fn spline(pieces: Vec<Bezier>, may_be_smooth: bool, axes: &Axes, machine: &Machine) -> Result<Nurbs, String> {
     if pieces.iter().any(|piece| 3 < piece.degree) {
         return Err("pieces of degree 4 and 5 have no cubic form".to_owned());
     }
@@ -94,7 +96,7 @@ fn spline(pieces: Vec<Bezier>, axes: &Axes, machine: &Machine) -> Result<Nurbs, 
         let (b, a) = (size(&before), size(&after));
         let turn: Position = std::array::from_fn(|i| after[i] / a - before[i] / b);
         let last = lengths[lengths.len() - 1];
-        if 0.0 < a && 0.0 < b && size(&turn) < SMOOTH {
+        if may_be_smooth && 0.0 < a && 0.0 < b && size(&turn) < SMOOTH {
             lengths.push(last * a / b);
             smooth.push(true);
         } else {

@@ -43,6 +43,7 @@ impl Cursor<'_> {
                 Written::Polynomial(_) | Written::Nurbs(_) => {
                     let pieces = self.pieces(written)?;
                     self.odd_even_pieces(curve, steps, &pieces, &mut found)?;
+                    found.path_blocks = blocks(written, pieces.len());
                     self.advance();
                 }
                 Written::Through(_, points) => self.through(log, points, tolerance, &mut found)?,
@@ -61,10 +62,7 @@ impl Cursor<'_> {
                 let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
                     return Err(self.differs("less-than-asked", "a path without blocks".to_owned()));
                 };
-                found.path_blocks = match written {
-                    Written::Nurbs(nurbs) => nurbs.points.len() - 1,
-                    Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => pieces.len(),
-                };
+                found.path_blocks = blocks(written, pieces.len());
                 for (i, piece) in pieces.iter().enumerate() {
                     let bound = log_piece(curve, piece).map_err(|error| {
                         self.differs("order-differs", format!("in piece {}: {error}", i + 1))
@@ -142,7 +140,6 @@ impl Cursor<'_> {
                 let bound = segment_piece(&metric, (&from, &to), piece, slack)
                     .map_err(|error| self.differs("order-differs", error.to_string()))?;
                 found.deviation = found.deviation.max(bound);
-                found.path_blocks += 1;
                 let end = metric.distance(&piece.end(), &to);
                 if end.mm <= slack {
                     found.deviation = found.deviation.max(end);
@@ -250,4 +247,12 @@ fn ends(curve: &LogCurve, start: f64, end: f64, found: &mut Found) {
     let missed = start.abs().max((end - curve.end()).abs());
     found.deviation.mm += missed * curve.speed_bound();
     found.deviation.rad += missed * curve.slope(0.0).abs().max(curve.slope(curve.end()).abs());
+}
+
+/// How many blocks a curve of so many pieces takes.
+fn blocks(written: &Written, pieces: usize) -> usize {
+    match written {
+        Written::Nurbs(nurbs) => nurbs.points.len() - 1,
+        Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => pieces,
+    }
 }
