@@ -138,7 +138,8 @@ pub fn verify(
                 })?;
             }
             Step::Cut(Cut { feed, role, curve }) => {
-                let place = cursor.here();
+                cursor.skip_comments();
+                let (at, within) = (cursor.at, cursor.within);
                 let found = cursor.cut(curve, *feed, tolerance, &mut ideal)?;
                 if !(found.deviation.mm <= tolerance) {
                     let message = format!(
@@ -146,7 +147,12 @@ pub fn verify(
                         found.deviation.mm
                     );
                     let diagnostic = Diagnostic::refusal("deviation-too-large", message);
-                    return Err(place.map_or(diagnostic.clone(), |span| diagnostic.at(span, "")).into());
+                    // Looked up only now: finding a line reads the text.
+                    (cursor.at, cursor.within) = (at, within);
+                    return Err(match cursor.step() {
+                        Some(step) => diagnostic.at(cursor.place(step), "").into(),
+                        None => diagnostic.into(),
+                    });
                 }
                 report.deviation = report.deviation.max(found.deviation);
                 report.status = report.status.max(found.status);
@@ -229,12 +235,6 @@ impl<'p> Cursor<'p> {
                 located.span
             }
         }
-    }
-
-    /// The place of what comes next, remarks aside.
-    fn here(&mut self) -> Option<Span> {
-        self.skip_comments();
-        self.step().map(|located| self.place(located))
     }
 
     /// The place of a line of the text, counted from 1.
