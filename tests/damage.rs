@@ -128,6 +128,7 @@ fn every_fault_is_refused() {
             }
         }
     }
+    println!("{tried} faults, {} missed", missed.len());
     assert!(missed.is_empty(), "{} of {tried} faults missed:\n{}", missed.len(), missed.join("\n"));
     assert!(2000 < tried, "only {tried} faults were tried");
 }
