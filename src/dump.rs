@@ -41,8 +41,18 @@ pub fn intent(intent: &Intent) -> String {
                 let dl = log.dl.map_or("auto".to_owned(), |dl| dl.to_string());
                 let _ = writeln!(
                     text,
-                    "logarithmic D1 {} S {} C {} r {} length {} {:?} {:?} index {} method {method} dl {dl} overrun {}",
-                    c.d1, c.s, c.c, c.r, c.length, c.hand, c.law, log.curve.index, log.overrun
+                    "logarithmic D1 {} S {} C {} r {} length {} {:?} {:?} index {} shift {} {} method {method} dl {dl} overrun {}",
+                    c.d1,
+                    c.s,
+                    c.c,
+                    c.r,
+                    c.length,
+                    c.hand,
+                    c.law,
+                    log.curve.index,
+                    log.curve.shift[0],
+                    log.curve.shift[1],
+                    log.overrun
                 );
             }
         });

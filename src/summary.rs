@@ -44,6 +44,8 @@ pub struct Summary {
 pub struct CutterFigures {
     /// How many flutes.
     pub flutes: usize,
+    /// How many passes over each.
+    pub passes: usize,
     /// Helix angle along the axis at both ends, degrees.
     pub helix_axial_deg: [f64; 2],
     /// Helix angle along the generatrix at both ends, degrees.
@@ -104,10 +106,10 @@ impl Summary {
     pub fn render(&self) -> String {
         let mut text = String::new();
         let motion = self.motion.as_deref().map_or(String::new(), |motion| format!(", {motion}"));
-        let flutes = self
-            .cutter
-            .as_ref()
-            .map_or(String::new(), |c| format!(", {} flute{}", c.flutes, plural(c.flutes)));
+        let flutes = self.cutter.as_ref().map_or(String::new(), |c| {
+            let passes = if c.passes == 1 { String::new() } else { format!(", {} passes", c.passes) };
+            format!(", {} flute{}{passes}", c.flutes, plural(c.flutes))
+        });
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}: {}{motion}{flutes}", self.name, self.machine);
         let cutting = self.path_blocks.map_or(String::new(), |n| format!(", {n} of them cutting"));
@@ -186,10 +188,17 @@ impl CutterFigures {
             })
             .collect();
         let log = flutes.first()?;
+        let mut indices: Vec<f64> = Vec::new();
+        for flute in &flutes {
+            if !indices.contains(&flute.curve.index) {
+                indices.push(flute.curve.index);
+            }
+        }
         let (curve, end) = (&log.curve, log.curve.end());
         let lead = [curve.lead(0.0), curve.lead(end)];
         Some(CutterFigures {
-            flutes: flutes.len(),
+            flutes: indices.len(),
+            passes: flutes.len() / indices.len(),
             helix_axial_deg: [curve.helix_axial(0.0), curve.helix_axial(end)],
             helix_generatrix_deg: [curve.helix_generatrix(0.0), curve.helix_generatrix(end)],
             lead_mm: lead[0].is_finite().then_some(lead),

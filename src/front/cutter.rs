@@ -20,18 +20,23 @@
 //! feed = 200.0       # mm/min
 //! retract = { axis = "Z", to = 50.0 }
 //! # spindle = 3000.0  tool = 1
+//! # infeed = { axis = "Y", step = 0.2, passes = 3 }  spark_out = 1  order = "flute"
 //! ```
 //!
-//! Each flute is a section: retract, return, index, approach, path, retract. Rapids go one axis at a time, and A never
-//! turns before the retract axis is clear.
+//! Each pass over a flute is a section: retract, return, index, approach, path, retract. Rapids go one axis at a time,
+//! and A never turns before the retract axis is clear.
+
+mod program;
+
+pub use program::parse_program;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::logcurve::{Cutter, CutterError, Hand, Law, LogCurve};
 use crate::geom::oddeven::{OddEven, StepError};
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Role, Step};
+use crate::ir::{Logarithmic, Method};
 use crate::source::{Source, SourceId, Span};
 use crate::tables::{self, Key};
-use crate::units::{Axes, Axis, Kind, Position};
+use crate::units::{Axes, Axis, Kind};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -70,6 +75,9 @@ pub const KEYS: &[Key] = &[
             Key::table("retract", &[Key::value("axis"), Key::value("to")]),
             Key::value("spindle"),
             Key::value("tool"),
+            Key::table("infeed", &[Key::value("axis"), Key::value("step"), Key::value("passes")]),
+            Key::value("spark_out"),
+            Key::value("order"),
         ],
     ),
 ];
@@ -111,6 +119,16 @@ struct ProcessTable {
     retract: Option<Spanned<RetractTable>>,
     spindle: Option<Spanned<f64>>,
     tool: Option<Spanned<i64>>,
+    infeed: Option<Spanned<InfeedTable>>,
+    spark_out: Option<Spanned<i64>>,
+    order: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+struct InfeedTable {
+    axis: Option<Spanned<String>>,
+    step: Option<Spanned<f64>>,
+    passes: Option<Spanned<i64>>,
 }
 
 #[derive(Deserialize)]
@@ -147,9 +165,38 @@ pub struct Process {
     pub spindle: Option<f64>,
     /// The tool's number.
     pub tool: u32,
+    /// Rough passes before the finishing one.
+    pub infeed: Option<Infeed>,
+    /// How often the finishing pass is made again without infeed.
+    pub spark_out: u32,
+    /// In which order flutes and passes are taken.
+    pub order: Order,
     /// Where the process stands in the file, or the whole of it.
     pub span: Span,
 }
+
+/// Rough passes: the whole path, shifted away from the finished one by step after step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Infeed {
+    /// Y or Z, as an index into X Y Z A.
+    pub axis: usize,
+    /// mm from one pass to the next; its sign says on which side the stock is.
+    pub step: f64,
+    /// How many rough passes there are.
+    pub passes: u32,
+}
+
+/// In which order flutes and passes are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// All passes of a flute, then the next flute.
+    Flute,
+    /// A pass on all flutes, then the next pass.
+    Pass,
+}
+
+/// The most passes of one kind.
+const MAX_PASSES: i64 = 1000;
 
 /// The most flutes a cutter may have.
 const MAX_FLUTES: i64 = 1000;
@@ -388,8 +435,23 @@ impl Reader {
     }
 
     fn process(&mut self, table: Option<ProcessTable>, span: Span) -> Process {
-        let mut process = Process { feed: None, retract: None, spindle: None, tool: 1, span };
+        let mut process = Process {
+            feed: None,
+            retract: None,
+            spindle: None,
+            tool: 1,
+            infeed: None,
+            spark_out: 0,
+            order: Order::Flute,
+            span,
+        };
         let Some(table) = table else { return process };
+        process.infeed = table.infeed.as_ref().and_then(|infeed| self.infeed(infeed));
+        if let Some(spark_out) = &table.spark_out {
+            process.spark_out = self.passes("spark_out", spark_out, 0);
+        }
+        process.order =
+            self.word("order", table.order.as_ref(), &[("flute", Order::Flute), ("pass", Order::Pass)]);
         let positive = |x: f64| 0.0 < x && x < 1.0e6;
         let must = "must be greater than zero and below a million";
         process.feed =
@@ -427,160 +489,37 @@ impl Reader {
         }
         process
     }
-}
 
-/// Reads a cutter file as what a program is to be made of.
-///
-/// # Errors
-/// As [`parse`]; also where feed or retract is missing.
-pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostics> {
-    let job = parse(source, id)?;
-    let mut diagnostics = Diagnostics::new();
-    let mut missing = |id, what: &str, line: &str| {
-        diagnostics.push(
-            Diagnostic::error(id, format!("a program needs {what}"))
-                .at(job.process.span, "")
-                .hint(format!("add under [process]: {line}")),
-        );
-    };
-    if job.process.feed.is_none() {
-        missing("feed-missing", "a feed", "feed = 200.0");
-    }
-    if job.process.retract.is_none() {
-        missing(
-            "retract-missing",
-            "a place in clear air to retract to",
-            "retract = { axis = \"Z\", to = 50.0 }",
-        );
-    }
-    if let Some((axis, to)) = job.process.retract {
-        let clear = job.flutes.iter().all(|flute| {
-            let far = flute_end(flute);
-            let (start, end) = (flute.curve.position(0.0)[axis], flute.curve.position(far)[axis]);
-            to < start.min(end) || start.max(end) < to
-        });
-        if !clear {
-            let name = Axes::xyza().name(axis);
-            diagnostics.push(
-                Diagnostic::error(
-                    "retract-not-clear",
-                    format!("{name} {to} lies on the way that {name} takes over the cutter"),
-                )
-                .at(job.process.span, "")
-                .hint("retract to a position that the path does not reach"),
+    fn infeed(&mut self, table: &Spanned<InfeedTable>) -> Option<Infeed> {
+        let InfeedTable { axis: Some(axis), step: Some(step), passes: Some(passes) } = table.get_ref() else {
+            self.error(
+                "infeed-incomplete",
+                "infeed needs axis, step and passes, as { axis = \"Y\", step = 0.2, passes = 3 }",
+                table.span(),
             );
+            return None;
+        };
+        let index = Axis::new(axis.get_ref()).and_then(|name| Axes::xyza().index_of(name));
+        let index = index.filter(|i| *i == 1 || *i == 2);
+        if index.is_none() {
+            self.error("infeed-axis", "the infeed axis is Y or Z: X runs along the cutter", axis.span());
         }
+        let holds = |x: f64| x != 0.0 && x.abs() < 1000.0;
+        let step =
+            self.number("step", step, "infeed-range", "must lie within 1000 mm and not be zero", holds);
+        let passes = self.passes("passes", passes, 1);
+        index.map(|axis| Infeed { axis, step, passes })
     }
-    diagnostics.into_result()?;
-    Ok(job.intent())
-}
 
-/// The greatest X that a flute may reach: an overrun ends within two steps of the end.
-fn flute_end(flute: &Logarithmic) -> f64 {
-    let more = if flute.overrun { 2.0 * flute.dl.unwrap_or(crate::pass::settle::MAX_STEP) } else { 0.0 };
-    flute.curve.end() + more
-}
-
-impl CutterJob {
-    /// The program, without the moves that feed and retract would allow where those are missing.
-    pub fn intent(&self) -> Intent {
-        let axes = Axes::xyza();
-        let mut steps = Vec::new();
-        let mut add = |step: Step<f64, Curve>| steps.push(Located { step, span: self.span });
-        let Process { feed, retract, spindle, tool, .. } = self.process;
-        if retract.is_some() {
-            add(Step::Tool(tool));
+    /// A count of passes.
+    fn passes(&mut self, key: &str, value: &Spanned<i64>, least: i64) -> u32 {
+        let n = *value.get_ref();
+        if !(least..=MAX_PASSES).contains(&n) {
+            self.error("passes-range", format!("{key} must be {least} to {MAX_PASSES}"), value.span());
         }
-        if let Some(rpm) = spindle {
-            add(Step::Spindle(rpm));
-        }
-        let count = self.flutes.len();
-        for (i, flute) in self.flutes.iter().enumerate() {
-            let start = flute.curve.position(0.0);
-            let shown = crate::decimal::Decimal::round(flute.curve.index, 4).unwrap_or_default();
-            add(Step::Comment(format!("FLUTE {} OF {count}, A {shown}", i + 1)));
-            if let Some((axis, to)) = retract {
-                add(Step::Rapid(vec![(axis, to)]));
-                let linear_first = (0..axes.count()).filter(|other| *other != axis);
-                for other in linear_first {
-                    add(Step::Rapid(vec![(other, start[other])]));
-                }
-                let mut clear: Position = start;
-                clear[axis] = to;
-                let mut approach = Polyline::new(clear, axes.count());
-                approach.push(&start);
-                add(Step::Cut(Cut { feed, role: Role::Approach, curve: Curve::Lines(approach) }));
-            }
-            add(Step::Cut(Cut { feed, role: Role::Path, curve: Curve::Logarithmic(flute.clone()) }));
-            if let Some((axis, to)) = retract {
-                add(Step::Rapid(vec![(axis, to)]));
-            }
-        }
-        Intent {
-            program: Program { name: self.name.clone(), axes, steps },
-            tolerance: self.tolerance,
-            name_span: self.name_span,
-        }
+        u32::try_from(n).unwrap_or(0)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PAPER: &str = "name = \"CONE10\"\n[cutter]\nD1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\n";
-
-    fn ids(text: &str) -> Vec<&'static str> {
-        match parse_program(&Source::new("t", text), SourceId::INPUT) {
-            Ok(_) => vec![],
-            Err(errors) => errors.0.iter().map(|d| d.id).collect(),
-        }
-    }
-
-    #[test]
-    fn the_smallest_file_is_enough_for_points() {
-        let job = parse(&Source::new("t", PAPER), SourceId::INPUT).unwrap();
-        assert_eq!((job.flutes.len(), job.flutes[0].curve.end()), (1, 30.0));
-        assert_eq!(ids(PAPER), ["feed-missing", "retract-missing"]);
-    }
-
-    #[test]
-    fn the_greek_key_and_the_byte_order_mark_are_taken() {
-        let text = format!("\u{feff}{PAPER}[interpolation]\n\"Δl\" = 0.5\n");
-        assert_eq!(parse(&Source::new("t", text), SourceId::INPUT).unwrap().flutes[0].dl, Some(0.5));
-    }
-
-    #[test]
-    fn a_flute_is_retracted_before_anything_turns() {
-        let text =
-            format!("{PAPER}flutes = 2\n[process]\nfeed = 200\nretract = {{ axis = \"Z\", to = 50 }}\n");
-        let intent = parse_program(&Source::new("t", text), SourceId::INPUT).unwrap();
-        let moves: Vec<(usize, f64)> = intent
-            .program
-            .steps
-            .iter()
-            .filter_map(|located| match &located.step {
-                Step::Rapid(axes) => Some(axes[0]),
-                Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Cut(_) => None,
-            })
-            .collect();
-        let flute = |a: f64| [(2, 50.0), (0, 0.0), (1, 0.0), (3, a), (2, 50.0)];
-        assert_eq!(moves, [flute(0.0), flute(180.0)].concat());
-    }
-
-    #[test]
-    fn what_is_wrong_is_named() {
-        let process = "[process]\nfeed = 200\nretract = { axis = \"Z\", to = 50 }\n";
-        let with = |from: &str, to: &str| ids(&format!("{}{process}", PAPER.replace(from, to)));
-        assert_eq!(with("D1 = 10", "D1 = 0"), ["not-positive"]);
-        assert_eq!(with("S = 30", "S = 90"), ["angle-range"]);
-        assert_eq!(with("C = 5", "C = -45"), ["taper-ends"]);
-        assert_eq!(with("length = 30", "length = nan"), ["not-finite"]);
-        assert_eq!(with("D1 = 10\nS = 30\n", ""), ["key-missing", "key-missing"]);
-        assert_eq!(with("r = 8", "r = 8\nflutes = 0"), ["flutes-range"]);
-        assert_eq!(with("r = 8", "r = 8\nhand = \"up\""), ["word-unknown"]);
-        assert_eq!(with("length = 30\n", "length = 30\n[interpolation]\ndl = 900\n"), ["step-too-large"]);
-        assert_eq!(ids(&format!("{PAPER}{}", process.replace("50", "0.2"))), ["retract-not-clear"]);
-        assert_eq!(ids(""), ["cutter-missing"]);
-    }
-}
+mod tests;

@@ -147,8 +147,11 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
     let forward = quotient_rule(&x);
     let q = d.combined(1.0, &x, beta);
     let g = quotient_rule(&a).times(&q).combined(1.0, &forward.times(&d), -k);
-    let y = piece.numerator(1).combined(1.0, &x, -curve.y_slope());
-    let z = piece.numerator(2).combined(1.0, &x, -curve.z_slope());
+    let off = |axis: usize, slope: f64, shift: f64| {
+        piece.numerator(axis).combined(1.0, &x, -slope).combined(1.0, &d, -shift)
+    };
+    let y = off(1, curve.y_slope(), curve.shift[0]);
+    let z = off(2, curve.z_slope(), curve.shift[1]);
     let greatest = angle.control_points().iter().fold(0.0, |most: f64, p| most.max(p[3].abs()));
     let backward_noise = -ROUNDING * forward.max_abs();
     // g is a difference of two products, and each of them rounds.

@@ -87,6 +87,8 @@ pub enum CutterError {
 pub struct LogCurve {
     /// The angle at X = 0, degrees.
     pub index: f64,
+    /// How far the whole path is shifted in Y and Z, mm: a rough pass leaves stock.
+    pub shift: [f64; 2],
     cutter: Cutter,
     /// k = 2 tan S / D1, with the sign of the hand, rad/mm.
     k: f64,
@@ -136,7 +138,7 @@ impl LogCurve {
             Law::ConstantLead => 0.0,
         };
         let k = turn * 2.0 * tan(s / DEGREES) / d1;
-        Ok(LogCurve { index, cutter, k, b, beta, tan_c, z_slope: tan_c * sin(r / DEGREES) })
+        Ok(LogCurve { index, shift: [0.0; 2], cutter, k, b, beta, tan_c, z_slope: tan_c * sin(r / DEGREES) })
     }
 
     /// The cutter that this is a flute of.
@@ -153,6 +155,18 @@ impl LogCurve {
     #[must_use]
     pub fn with_index(&self, index: f64) -> LogCurve {
         LogCurve { index, ..*self }
+    }
+
+    /// The same curve shifted by `shift` in Y and Z, mm.
+    #[must_use]
+    pub fn with_shift(&self, shift: [f64; 2]) -> LogCurve {
+        LogCurve { shift, ..*self }
+    }
+
+    /// The curve that all flutes and passes share: neither indexed nor shifted.
+    #[must_use]
+    pub fn base(&self) -> LogCurve {
+        LogCurve { index: 0.0, shift: [0.0; 2], ..*self }
     }
 
     /// k = ab = 2 tan S / D1, rad/mm, with the sign of the hand: dA/dX at X = 0.
@@ -202,7 +216,8 @@ impl LogCurve {
 
     /// X Y Z in mm and A in degrees, A given in radians without the index.
     pub fn position_with(&self, x: f64, a: f64) -> Position {
-        [x, x * self.tan_c, x * self.z_slope, self.index + a * DEGREES, 0.0, 0.0]
+        let [y, z] = self.shift;
+        [x, y + x * self.tan_c, z + x * self.z_slope, self.index + a * DEGREES, 0.0, 0.0]
     }
 
     /// X Y Z in mm and A in degrees.

@@ -39,7 +39,7 @@ pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Dia
         };
         if log.dl.is_none() {
             let mut key = log.clone();
-            key.curve.index = 0.0;
+            key.curve = key.curve.base();
             let dl = match &found {
                 Some((known, dl)) if *known == key => *dl,
                 _ => step(log, tolerance).map_err(|error| too_many(&error))?,

@@ -31,7 +31,7 @@ impl Cursor<'_> {
             let dl = log.dl.unwrap_or(crate::pass::settle::MAX_STEP);
             let steps = OddEven::new(*curve, dl, log.overrun)
                 .map_err(|error| self.differs("not-comparable", error.to_string()))?;
-            let key = curve.with_index(0.0);
+            let key = curve.base();
             let known =
                 ideal.0.filter(|(curve, step, _)| *curve == key && *step == dl).map(|(_, _, bound)| bound);
             let from_ideal =
@@ -172,7 +172,8 @@ impl Cursor<'_> {
         let mut from = self.decimals.position(&self.before(points));
         let first = from[0];
         let off_cone = |p: &Position| {
-            let (dy, dz) = (p[1] - p[0] * curve.y_slope(), p[2] - p[0] * curve.z_slope());
+            let asked = curve.position_with(p[0], 0.0);
+            let (dy, dz) = (p[1] - asked[1], p[2] - asked[2]);
             (dy * dy + dz * dz).sqrt()
         };
         let radians = |p: &Position| (p[3] - curve.index) / DEGREES;

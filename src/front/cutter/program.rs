@@ -1,0 +1,177 @@
+//! The program round the paths: which pass comes when, and how the tool gets there and away.
+//!
+//! Every pass over a flute is a section of its own, so that a program can be restarted there:
+//!
+//! | step | move |
+//! |---|---|
+//! | retract | the retract axis to clear air, at rapid, alone |
+//! | return | the other linear axes to the start of the path, one at a time |
+//! | index | A to the flute |
+//! | approach | the retract axis to the start of the path, at feed |
+//! | path | the flute |
+//! | retract | the retract axis to clear air, at rapid |
+
+use super::{CutterJob, Infeed, Order, Process, parse};
+use crate::decimal::Decimal;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Step};
+use crate::source::{Source, SourceId};
+use crate::units::{Axes, Position};
+
+/// Reads a cutter file as what a program is to be made of.
+///
+/// # Errors
+/// As [`parse`]; also where feed or retract is missing, or where the retract position is not clear of the work.
+pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostics> {
+    let job = parse(source, id)?;
+    let mut found = Diagnostics::new();
+    let mut missing = |id, what: &str, line: &str| {
+        found.push(
+            Diagnostic::error(id, format!("a program needs {what}"))
+                .at(job.process.span, "")
+                .hint(format!("add under [process]: {line}")),
+        );
+    };
+    if job.process.feed.is_none() {
+        missing("feed-missing", "a feed", "feed = 200.0");
+    }
+    if job.process.retract.is_none() {
+        let line = "retract = { axis = \"Z\", to = 50.0 }";
+        missing("retract-missing", "a place in clear air to retract to", line);
+    }
+    if let Some(diagnostic) = job.retract_not_clear() {
+        found.push(diagnostic);
+    }
+    found.into_result()?;
+    Ok(job.intent())
+}
+
+/// The greatest X that a flute may reach: an overrun ends within two steps of the end.
+fn flute_end(flute: &Logarithmic) -> f64 {
+    let more = if flute.overrun { 2.0 * flute.dl.unwrap_or(crate::pass::settle::MAX_STEP) } else { 0.0 };
+    flute.curve.end() + more
+}
+
+/// One pass: how far the path is shifted, and what it is called.
+struct Pass {
+    shift: [f64; 2],
+    name: String,
+}
+
+impl CutterJob {
+    /// Rough passes, the finishing pass, spark-out.
+    fn passes(&self) -> Vec<Pass> {
+        let Process { infeed, spark_out, .. } = self.process;
+        let mut passes = Vec::new();
+        if let Some(Infeed { axis, step, passes: rough }) = infeed {
+            let name = Axes::xyza().name(axis);
+            for i in 1..=rough {
+                let mut shift = [0.0; 2];
+                shift[axis - 1] = step * f64::from(rough + 1 - i);
+                let stock = Decimal::round(shift[axis - 1], 4).unwrap_or_default();
+                passes.push(Pass { shift, name: format!(", ROUGH {i} OF {rough}, {name} {stock}") });
+            }
+        }
+        let alone = passes.is_empty() && spark_out == 0;
+        let name = if alone { String::new() } else { ", FINISH".to_owned() };
+        passes.push(Pass { shift: [0.0; 2], name });
+        passes.extend(
+            (1..=spark_out)
+                .map(|i| Pass { shift: [0.0; 2], name: format!(", SPARK-OUT {i} OF {spark_out}") }),
+        );
+        passes
+    }
+
+    /// What is wrong with the retract position: it lies on the way of the path, or behind it as the stock sees it.
+    fn retract_not_clear(&self) -> Option<Diagnostic> {
+        let (axis, to) = self.process.retract?;
+        let name = Axes::xyza().name(axis);
+        let mut reach = (f64::INFINITY, f64::NEG_INFINITY);
+        for flute in &self.flutes {
+            for pass in self.passes() {
+                let curve = flute.curve.with_shift(pass.shift);
+                for x in [0.0, flute_end(flute)] {
+                    let at = curve.position(x)[axis];
+                    reach = (reach.0.min(at), reach.1.max(at));
+                }
+            }
+        }
+        if reach.0 <= to && to <= reach.1 {
+            let message = format!("{name} {to} lies on the way that {name} takes over the cutter");
+            return Some(
+                Diagnostic::error("retract-not-clear", message)
+                    .at(self.process.span, "")
+                    .hint("retract to a position that the path does not reach"),
+            );
+        }
+        let infeed = self.process.infeed.filter(|infeed| infeed.axis == axis)?;
+        let through = (0.0 < infeed.step) != (reach.1 < to);
+        through.then(|| {
+            let message =
+                format!("{name} retracts through the work: the infeed's stock is on its other side");
+            Diagnostic::error("retract-through-work", message)
+                .at(self.process.span, "")
+                .hint("the sign of infeed step says on which side of the finished path the stock is")
+        })
+    }
+
+    /// The program, without the moves that feed and retract would allow where those are missing.
+    pub fn intent(&self) -> Intent {
+        let mut steps = Vec::new();
+        let mut add = |step: Step<f64, Curve>| steps.push(Located { step, span: self.span });
+        if self.process.retract.is_some() {
+            add(Step::Tool(self.process.tool));
+        }
+        if let Some(rpm) = self.process.spindle {
+            add(Step::Spindle(rpm));
+        }
+        let passes = self.passes();
+        match self.process.order {
+            Order::Flute => {
+                for flute in 0..self.flutes.len() {
+                    for pass in &passes {
+                        self.section(flute, pass, &mut add);
+                    }
+                }
+            }
+            Order::Pass => {
+                for pass in &passes {
+                    for flute in 0..self.flutes.len() {
+                        self.section(flute, pass, &mut add);
+                    }
+                }
+            }
+        }
+        Intent {
+            program: Program { name: self.name.clone(), axes: Axes::xyza(), steps },
+            tolerance: self.tolerance,
+            name_span: self.name_span,
+        }
+    }
+
+    /// One pass over one flute.
+    fn section(&self, flute: usize, pass: &Pass, add: &mut impl FnMut(Step<f64, Curve>)) {
+        let axes = Axes::xyza();
+        let Process { feed, retract, .. } = self.process;
+        let log = &self.flutes[flute];
+        let path = Logarithmic { curve: log.curve.with_shift(pass.shift), ..log.clone() };
+        let start = path.curve.position(0.0);
+        let angle = Decimal::round(path.curve.index, 4).unwrap_or_default();
+        add(Step::Comment(format!("FLUTE {} OF {}, A {angle}{}", flute + 1, self.flutes.len(), pass.name)));
+        if let Some((axis, to)) = retract {
+            add(Step::Rapid(vec![(axis, to)]));
+            for other in (0..axes.count()).filter(|other| *other != axis) {
+                add(Step::Rapid(vec![(other, start[other])]));
+            }
+            let mut clear: Position = start;
+            clear[axis] = to;
+            let mut approach = Polyline::new(clear, axes.count());
+            approach.push(&start);
+            add(Step::Cut(Cut { feed, role: Role::Approach, curve: Curve::Lines(approach) }));
+        }
+        add(Step::Cut(Cut { feed, role: Role::Path, curve: Curve::Logarithmic(path) }));
+        if let Some((axis, to)) = retract {
+            add(Step::Rapid(vec![(axis, to)]));
+        }
+    }
+}
