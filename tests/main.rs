@@ -10,6 +10,7 @@
 //! | `damage` | a program changed in any word is refused |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
 //! | `readme` | the README's commands |
+//! | `schema` | keys and JSON Schemas |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
@@ -22,5 +23,6 @@ mod paper;
 mod readme;
 mod robust;
 mod roundtrip;
+mod schema;
 mod support;
 mod tidy;

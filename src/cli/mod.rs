@@ -7,6 +7,8 @@ mod dump;
 mod interpolate;
 mod io;
 mod machines;
+mod man;
+mod schema;
 mod verify;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -47,7 +49,9 @@ enum Command {
     Check(check::Check),
     Dump(dump::Dump),
     Machines(machines::Machines),
+    Schema(schema::Schema),
     Completions(completions::Completions),
+    Man(man::Man),
 }
 
 /// The methods as the command line spells them.
@@ -82,7 +86,9 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Check(command) => command.run(&console, &mut sources),
         Command::Dump(command) => command.run(&console, &mut sources),
         Command::Machines(command) => command.run(&console),
+        Command::Schema(command) => command.run(&console),
         Command::Completions(command) => command.run(&console),
+        Command::Man(command) => command.run(&console),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

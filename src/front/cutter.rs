@@ -26,8 +26,11 @@
 //! Each pass over a flute is a section: retract, return, index, approach, path, retract. Rapids go one axis at a time,
 //! and A never turns before the retract axis is clear.
 
+mod file;
 mod program;
 
+use file::{CutterTable, File, InfeedTable, ProcessTable, RetractTable};
+pub use file::{KEYS, schema};
 pub use program::parse_program;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -35,107 +38,10 @@ use crate::geom::logcurve::{Cutter, CutterError, Hand, Law, LogCurve};
 use crate::geom::oddeven::{OddEven, StepError};
 use crate::ir::{Logarithmic, Method};
 use crate::source::{Source, SourceId, Span};
-use crate::tables::{self, Key};
+use crate::tables;
 use crate::units::{Axes, Axis, Kind};
-use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
-
-/// The keys of a cutter file.
-pub const KEYS: &[Key] = &[
-    Key::value("name"),
-    Key::table(
-        "cutter",
-        &[
-            Key::value("D1"),
-            Key::value("S"),
-            Key::value("C"),
-            Key::value("r"),
-            Key::value("length"),
-            Key::value("flutes"),
-            Key::value("index"),
-            Key::value("hand"),
-            Key::value("law"),
-        ],
-    ),
-    Key::table(
-        "interpolation",
-        &[
-            Key::value("dl"),
-            Key::value("Δl"),
-            Key::value("method"),
-            Key::value("overrun"),
-            Key::value("tolerance"),
-        ],
-    ),
-    Key::table(
-        "process",
-        &[
-            Key::value("feed"),
-            Key::table("retract", &[Key::value("axis"), Key::value("to")]),
-            Key::value("spindle"),
-            Key::value("tool"),
-            Key::table("infeed", &[Key::value("axis"), Key::value("step"), Key::value("passes")]),
-            Key::value("spark_out"),
-            Key::value("order"),
-        ],
-    ),
-];
-
-#[derive(Deserialize)]
-struct File {
-    name: Option<Spanned<String>>,
-    cutter: Option<Spanned<CutterTable>>,
-    interpolation: Option<InterpolationTable>,
-    process: Option<Spanned<ProcessTable>>,
-}
-
-#[derive(Deserialize)]
-#[allow(non_snake_case, reason = "the keys are the drawing's letters")]
-struct CutterTable {
-    D1: Option<Spanned<f64>>,
-    S: Option<Spanned<f64>>,
-    C: Option<Spanned<f64>>,
-    r: Option<Spanned<f64>>,
-    length: Option<Spanned<f64>>,
-    flutes: Option<Spanned<i64>>,
-    index: Option<Spanned<Vec<Spanned<f64>>>>,
-    hand: Option<Spanned<String>>,
-    law: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize, Default)]
-struct InterpolationTable {
-    #[serde(alias = "Δl")]
-    dl: Option<Spanned<f64>>,
-    method: Option<Spanned<String>>,
-    overrun: Option<bool>,
-    tolerance: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-struct ProcessTable {
-    feed: Option<Spanned<f64>>,
-    retract: Option<Spanned<RetractTable>>,
-    spindle: Option<Spanned<f64>>,
-    tool: Option<Spanned<i64>>,
-    infeed: Option<Spanned<InfeedTable>>,
-    spark_out: Option<Spanned<i64>>,
-    order: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-struct InfeedTable {
-    axis: Option<Spanned<String>>,
-    step: Option<Spanned<f64>>,
-    passes: Option<Spanned<i64>>,
-}
-
-#[derive(Deserialize)]
-struct RetractTable {
-    axis: Option<Spanned<String>>,
-    to: Option<Spanned<f64>>,
-}
 
 /// A cutter file, read and found sound.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,135 +1,15 @@
 //! Machine files as text: keys, values, and what is wrong with them.
 
+use super::keys::{AxesFile, AxisFile, DigitsFile, File, KEYS, SplineFile};
 use super::template::Template;
 use super::{AxisLimits, BUILT_IN, Digits, Frame, Machine, Spline, Text};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect;
 use crate::source::{SourceId, Span};
-use crate::tables::{self, Key, nearest};
+use crate::tables::{self, nearest};
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Spanned;
-
-/// The keys of a machine file.
-pub const KEYS: &[Key] = &[
-    Key::value("extends"),
-    Key::value("name"),
-    Key::value("about"),
-    Key::value("dialect"),
-    Key::value("motion"),
-    Key::value("tolerance"),
-    Key::table("axes", &[Key::value("linear"), Key::value("rotary")]),
-    Key::each("axis", &[Key::value("kind"), Key::value("min"), Key::value("max"), Key::value("max_speed")]),
-    Key::table(
-        "digits",
-        &[
-            Key::value("linear"),
-            Key::value("rotary"),
-            Key::value("feed"),
-            Key::value("knot"),
-            Key::value("weight"),
-        ],
-    ),
-    Key::table(
-        "text",
-        &[
-            Key::value("point_always"),
-            Key::value("sign_always"),
-            Key::value("number_start"),
-            Key::value("number_step"),
-            Key::value("extension"),
-        ],
-    ),
-    Key::table(
-        "spline",
-        &[
-            Key::value("axes"),
-            Key::value("poly_degree"),
-            Key::value("shared_parameter"),
-            Key::value("bspline_min_blocks"),
-            Key::value("begin"),
-            Key::value("end"),
-        ],
-    ),
-    Key::table(
-        "program",
-        &[
-            Key::value("header"),
-            Key::value("tool"),
-            Key::value("spindle"),
-            Key::value("tool_spindle"),
-            Key::value("footer"),
-        ],
-    ),
-];
-
-#[derive(Deserialize, Default)]
-struct File {
-    extends: Option<Spanned<String>>,
-    name: Option<String>,
-    about: Option<String>,
-    dialect: Option<Spanned<String>>,
-    motion: Option<Spanned<String>>,
-    tolerance: Option<Spanned<f64>>,
-    axes: Option<AxesFile>,
-    axis: Option<BTreeMap<String, AxisFile>>,
-    digits: Option<DigitsFile>,
-    text: Option<TextFile>,
-    spline: Option<SplineFile>,
-    program: Option<ProgramFile>,
-}
-
-#[derive(Deserialize, Default)]
-struct AxesFile {
-    linear: Option<Spanned<Vec<Spanned<String>>>>,
-    rotary: Option<Spanned<Vec<Spanned<String>>>>,
-}
-
-#[derive(Deserialize, Default)]
-struct AxisFile {
-    kind: Option<Spanned<String>>,
-    min: Option<Spanned<f64>>,
-    max: Option<Spanned<f64>>,
-    max_speed: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Default)]
-struct DigitsFile {
-    linear: Option<Spanned<u8>>,
-    rotary: Option<Spanned<u8>>,
-    feed: Option<Spanned<u8>>,
-    knot: Option<Spanned<u8>>,
-    weight: Option<Spanned<u8>>,
-}
-
-#[derive(Deserialize, Default)]
-struct TextFile {
-    point_always: Option<bool>,
-    sign_always: Option<bool>,
-    number_start: Option<u32>,
-    number_step: Option<u32>,
-    extension: Option<String>,
-}
-
-#[derive(Deserialize, Default)]
-struct SplineFile {
-    axes: Option<Vec<Spanned<String>>>,
-    poly_degree: Option<Spanned<usize>>,
-    shared_parameter: Option<bool>,
-    bspline_min_blocks: Option<Spanned<usize>>,
-    begin: Option<Spanned<String>>,
-    end: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize, Default)]
-struct ProgramFile {
-    header: Option<Vec<Spanned<String>>>,
-    tool: Option<Vec<Spanned<String>>>,
-    spindle: Option<Vec<Spanned<String>>>,
-    tool_spindle: Option<Vec<Spanned<String>>>,
-    footer: Option<Vec<Spanned<String>>>,
-}
 
 /// Reads a machine file.
 ///

@@ -6,13 +6,14 @@
 //! start for a file of one's own.
 
 mod file;
+mod keys;
 pub mod template;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::{Dialect, Motion};
 use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
-pub use file::KEYS;
+pub use keys::{KEYS, schema};
 use std::collections::BTreeMap;
 use template::Template;
 
