@@ -1,6 +1,8 @@
 //! What a compilation tells beside the program.
 
+use crate::geom::logcurve::LogCurve;
 use crate::ir::{Curve, Cut, Intent, Role, Step};
+use crate::machine::{Machine, RotaryFeed};
 use crate::units::DEGREES;
 use crate::verify::Report;
 use serde::Serialize;
@@ -21,6 +23,10 @@ pub struct Summary {
     pub path_blocks: Option<usize>,
     /// The paths' length, mm; none where nothing was verified.
     pub cutting_length: Option<f64>,
+    /// How long the paths take at their feed, minutes: without rapids, approaches and acceleration.
+    pub cutting_minutes: f64,
+    /// The speed along X Y Z at the slowest and the fastest place of a path, mm/min.
+    pub speed: Option<[f64; 2]>,
     /// mm.
     pub tolerance: f64,
     /// `proved`, `points-only` or `not verified`.
@@ -64,7 +70,7 @@ impl Summary {
     /// The figures of an intent, a text and its proof.
     pub fn new(
         intent: &Intent,
-        machine: &str,
+        machine: &Machine,
         motion: Option<&str>,
         text: &str,
         report: Option<&Report>,
@@ -74,6 +80,14 @@ impl Summary {
         let steps = &intent.program.steps;
         if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
             notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
+        }
+        let (cutting_minutes, speed) = times(intent, machine);
+        if let (RotaryFeed::DegreesAsMm, Some([slow, fast])) = (machine.rotary_feed, speed)
+            && intent_turns(intent)
+        {
+            notes.push(format!(
+                "F counts degrees of A as mm on this machine: X Y Z move at {slow:.1} to {fast:.1} mm/min, not at F"
+            ));
         }
         notes.push(
             "the path is that of the contact point; the wheel's radius and profile are not modelled"
@@ -85,12 +99,14 @@ impl Summary {
         );
         Summary {
             name: intent.program.name.clone(),
-            machine: machine.to_owned(),
+            machine: machine.name.clone(),
             motion: motion.map(str::to_owned),
             // A continued block goes on in indented lines.
             blocks: text.lines().filter(|line| !line.starts_with(' ')).count(),
             path_blocks: report.map(|r| r.path_blocks),
             cutting_length: report.map(|r| r.cutting_length),
+            cutting_minutes,
+            speed,
             tolerance,
             status: report.map_or("not verified", |r| r.status.word()),
             deviation_mm: report.map(|r| r.deviation.mm),
@@ -117,6 +133,7 @@ impl Summary {
         if let Some(length) = self.cutting_length {
             let _ = writeln!(text, "  length     {length:.3} mm cutting");
         }
+        let _ = writeln!(text, "  time       {:.2} min cutting", self.cutting_minutes);
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
                 let _ = writeln!(
@@ -207,4 +224,41 @@ impl CutterFigures {
             dl: log.dl,
         })
     }
+}
+
+/// The paths of an intent with their feeds.
+fn paths(intent: &Intent) -> impl Iterator<Item = (&LogCurve, f64)> {
+    intent.program.steps.iter().filter_map(|located| match &located.step {
+        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), feed: Some(feed) }) => {
+            Some((&log.curve, *feed))
+        }
+        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+    })
+}
+
+fn intent_turns(intent: &Intent) -> bool {
+    paths(intent).any(|(curve, _)| curve.k() != 0.0)
+}
+
+/// Cutting time in minutes, and the least and greatest speed along X Y Z.
+fn times(intent: &Intent, machine: &Machine) -> (f64, Option<[f64; 2]>) {
+    let mut minutes = 0.0;
+    let mut speed: Option<[f64; 2]> = None;
+    for (curve, feed) in paths(intent) {
+        let c = curve.length_per_x();
+        let (length, at) = match machine.rotary_feed {
+            RotaryFeed::Free => (curve.end() * c, [feed; 2]),
+            RotaryFeed::DegreesAsMm => {
+                let local = |x: f64| {
+                    let a = curve.slope(x) * DEGREES;
+                    feed * c / (c * c + a * a).sqrt()
+                };
+                (curve.length_with_degrees(), [local(0.0), local(curve.end())])
+            }
+        };
+        minutes += length / feed;
+        let (slow, fast) = (at[0].min(at[1]), at[0].max(at[1]));
+        speed = Some(speed.map_or([slow, fast], |known| [known[0].min(slow), known[1].max(fast)]));
+    }
+    (minutes, speed)
 }

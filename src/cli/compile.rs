@@ -64,7 +64,7 @@ impl Compile {
         console.diagnostics(&output.warnings, sources);
         console.summary(&Summary::new(
             &output.intent,
-            &machine.name,
+            &machine,
             Some(output.motion.name),
             &output.text,
             output.report.as_ref(),

@@ -48,14 +48,7 @@ impl Verify {
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);
         let report = Some(&verified.report);
-        console.summary(&Summary::new(
-            &verified.intent,
-            &machine.name,
-            None,
-            &text,
-            report,
-            verified.tolerance,
-        ));
+        console.summary(&Summary::new(&verified.intent, &machine, None, &text, report, verified.tolerance));
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::keys::{AxesFile, AxisFile, DigitsFile, File, KEYS, SplineFile};
 use super::template::Template;
-use super::{AxisLimits, BUILT_IN, Digits, Frame, Machine, Spline, Text};
+use super::{AxisLimits, BUILT_IN, Digits, Frame, Machine, RotaryFeed, Spline, Text};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect;
 use crate::source::{SourceId, Span};
@@ -134,6 +134,17 @@ impl Reader {
                 "text.extension",
             )?,
         };
+        let rotary_feed = match file.feed.and_then(|feed| feed.rotary) {
+            None => self.or(None, base.map(|b| b.rotary_feed), "feed.rotary")?,
+            Some(word) => match word.get_ref().as_str() {
+                "free" => RotaryFeed::Free,
+                "degrees-as-mm" => RotaryFeed::DegreesAsMm,
+                _ => {
+                    self.error("feed-rotary", "rotary is \"free\" or \"degrees-as-mm\"", word.span());
+                    RotaryFeed::Free
+                }
+            },
+        };
         let spline = self.spline(file.spline.unwrap_or_default(), base)?;
         let program = file.program.unwrap_or_default();
         let frame = Frame {
@@ -162,6 +173,7 @@ impl Reader {
             limits: self.limits(file.axis.unwrap_or_default(), axes.as_ref(), base),
             digits: digits?,
             text,
+            rotary_feed,
             spline,
             frame,
         })

@@ -36,6 +36,7 @@ pub const KEYS: &[Key] = &[
             Key::value("extension"),
         ],
     ),
+    Key::table("feed", &[Key::value("rotary")]),
     Key::table(
         "spline",
         &[
@@ -87,6 +88,8 @@ pub(super) struct File {
     pub(super) digits: Option<DigitsFile>,
     /// Spelling.
     pub(super) text: Option<TextFile>,
+    /// What F means.
+    pub(super) feed: Option<FeedFile>,
     /// What its splines take.
     pub(super) spline: Option<SplineFile>,
     /// The lines round a program.
@@ -158,6 +161,15 @@ pub(super) struct TextFile {
     pub(super) number_step: Option<u32>,
     /// The usual extension of a program file.
     pub(super) extension: Option<String>,
+}
+
+/// What F means.
+#[derive(Deserialize, JsonSchema, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FeedFile {
+    /// free: F is the speed of the linear axes and rotary ones go along; degrees-as-mm: a degree counts as a mm.
+    #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm"]))]
+    pub(super) rotary: Option<Spanned<String>>,
 }
 
 /// What splines the machine takes.

@@ -51,10 +51,21 @@ pub struct Machine {
     pub digits: Digits,
     /// Spelling.
     pub text: Text,
+    /// How F counts rotary axes.
+    pub rotary_feed: RotaryFeed,
     /// What its splines take.
     pub spline: Spline,
     /// The lines round a program.
     pub frame: Frame,
+}
+
+/// How F counts rotary axes in a block that moves linear ones too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotaryFeed {
+    /// F is the speed along the path of the linear axes; rotary ones go along.
+    Free,
+    /// F is the speed along the path of all axes, a degree counted as a millimetre.
+    DegreesAsMm,
 }
 
 /// What one axis can do.

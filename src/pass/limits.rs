@@ -1,16 +1,14 @@
 //! How fast each axis has to move, against what the machine file allows.
 //!
-//! F is the speed along the path of the linear axes. On a piece with position x(t) and linear path speed
-//! L′ = √(ΣX′²) axis i moves at F · |x_i′|/L′. Pieces are halved until each part is a 32nd; there |x_i′| is bounded from
+//! F is the speed along the path of the axes that the machine file says it counts: the linear ones, or all with a degree
+//! as a millimetre. On a piece with position x(t) and path speed L′ = √(ΣX′²) axis i moves at F · |x_i′|/L′. Pieces are halved until each part is a 32nd; there |x_i′| is bounded from
 //! above and each X′ from below by Bernstein coefficients, so the figure is never too low.
-//!
-//! Where a control counts degrees as millimetres in F it moves slower than this.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bernstein::Bernstein;
 use crate::geom::bezier::Bezier;
 use crate::ir::{Cut, Decimals, Step, Written};
-use crate::machine::Machine;
+use crate::machine::{Machine, RotaryFeed};
 use crate::source::Span;
 use crate::units::{Kind, MAX_AXES, Position};
 use crate::verify::to_nurbs;
@@ -42,7 +40,7 @@ pub fn speeds(decimals: &Decimals, machine: &Machine) -> Diagnostics {
         let feed = feed.to_f64();
         each_piece(decimals, curve, |piece| {
             for (axis, _) in &limited {
-                let (speed, at) = axis_speed(decimals, piece, *axis, feed);
+                let (speed, at) = axis_speed(decimals, machine, piece, *axis, feed);
                 if fastest[*axis].is_none_or(|known| known.speed < speed) {
                     fastest[*axis] = Some(Fastest { speed, at, feed, span: located.span });
                 }
@@ -99,11 +97,17 @@ fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl FnMut(&Bezie
 
 /// An upper bound of an axis' speed on a polynomial piece, and the start of the part where it is reached. A block that
 /// moves no linear axis runs at F in the rotary one.
-fn axis_speed(decimals: &Decimals, piece: &Bezier, axis: usize, feed: f64) -> (f64, Position) {
+fn axis_speed(
+    decimals: &Decimals,
+    machine: &Machine,
+    piece: &Bezier,
+    axis: usize,
+    feed: f64,
+) -> (f64, Position) {
     let axes = decimals.program.axes;
     let derivative = |i: usize| piece.numerator(i).derivative();
-    let linear: Vec<Bernstein> =
-        (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).map(derivative).collect();
+    let counts = |i: &usize| axes.kind(*i) == Kind::Linear || machine.rotary_feed == RotaryFeed::DegreesAsMm;
+    let linear: Vec<Bernstein> = (0..axes.count()).filter(counts).map(derivative).collect();
     let own = derivative(axis);
     if own.max_abs() == 0.0 {
         return (0.0, piece.start());
