@@ -120,6 +120,7 @@ pub fn compile(
         };
         return Err(Diagnostics::from(diagnostic).into());
     }
+    length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
     let mut warnings = Diagnostics::new();
     let motion = match options.motion.or(machine.motion) {
@@ -131,6 +132,7 @@ pub fn compile(
         }
     };
     let intent = pass::settle::settle(&intent, motion.form, tolerance)?;
+    warnings.extend(overrun_without_steps(&intent));
     // Rounding costs something. What is left of the tolerance is for the fit; where the whole turns out too dear,
     // the fit is made finer. Lines are never refined: their points are asked for as they are.
     let left = tolerance - resolution(&intent, &machine).min(0.5 * tolerance);
@@ -261,6 +263,47 @@ fn with_options(mut intent: Intent, options: &Options) -> Intent {
     intent
 }
 
+/// The paths of an intent that are logarithmic curves.
+fn logarithmic(intent: &Intent) -> impl Iterator<Item = (&ir::Logarithmic, source::Span)> {
+    intent.program.steps.iter().filter_map(|located| match &located.step {
+        Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) => Some((log, located.span)),
+        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+    })
+}
+
+/// A length that rounds to nothing, or to a diameter of nothing, is no path.
+fn length_within_decimals(intent: &Intent, machine: &Machine) -> Result<(), Diagnostics> {
+    let digits = machine.axis_digits()[0];
+    for (log, span) in logarithmic(intent) {
+        let units = decimal::round_units(log.curve.end(), digits).unwrap_or(0);
+        let end = decimal::units_to_f64(units, digits);
+        if units <= 0 || 1.0 + log.curve.beta() * end <= 0.0 {
+            let message = format!(
+                "with {digits} decimals the length {} becomes {end}, which is no path",
+                log.curve.end()
+            );
+            return Err(Diagnostic::error("length-below-decimals", message).at(span, "").into());
+        }
+    }
+    Ok(())
+}
+
+/// The warning where whole cycles were asked for and no steps are made.
+fn overrun_without_steps(intent: &Intent) -> Diagnostics {
+    let mut warnings = Diagnostics::new();
+    if let Some((_, span)) = logarithmic(intent).find(|(log, _)| log.overrun && log.method == Method::Direct)
+    {
+        let message =
+            "overrun is a rule of odd-even steps; this path follows the curve itself and ends at its length";
+        warnings.push(
+            Diagnostic::warning("overrun-unused", message)
+                .at(span, "")
+                .hint("method = \"odd-even\" makes the steps"),
+        );
+    }
+    warnings
+}
+
 /// The greatest radius at which a rotary axis counts, mm.
 fn radius(intent: &Intent) -> f64 {
     let radii = intent.program.steps.iter().map(|located| match &located.step {
@@ -318,11 +361,7 @@ fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f6
 fn steps_exceed_tolerance(intent: &Intent, report: &Report, tolerance: f64) -> Diagnostics {
     let mut warnings = Diagnostics::new();
     let Some(from_ideal) = report.from_ideal.filter(|bound| tolerance < bound.mm) else { return warnings };
-    let first = intent.program.steps.iter().find_map(|located| match &located.step {
-        Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) => Some((log, located.span)),
-        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
-    });
-    let Some((log, span)) = first else { return warnings };
+    let Some((log, span)) = logarithmic(intent).next() else { return warnings };
     let message = format!(
         "the steps leave the ideal curve by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
         from_ideal.mm

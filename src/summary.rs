@@ -93,10 +93,12 @@ impl Summary {
             "the path is that of the contact point; the wheel's radius and profile are not modelled"
                 .to_owned(),
         );
-        notes.push(
+        if report.is_some() {
+            notes.push(
             "the proof covers the programmed path, not what the control's own smoothing or compressor adds"
                 .to_owned(),
         );
+        }
         Summary {
             name: intent.program.name.clone(),
             machine: machine.name.clone(),

@@ -427,11 +427,44 @@ pub fn same_form(text: &str, written: &str, id: SourceId) -> Result<(), Diagnost
 /// # Errors
 /// See [`NurbsError`].
 pub fn to_nurbs(decimals: &Decimals, nurbs: &crate::ir::WrittenNurbs) -> Result<Nurbs, NurbsError> {
-    let knots = nurbs.knots.iter().map(|t| crate::decimal::units_to_f64(*t, nurbs.knot_digits)).collect();
+    // Only ratios of knots count, so they are taken in units of their last decimal: whole numbers, which a float holds and
+    // subtracts exactly up to 2⁵³. A difference of decimals that were divided first would not be exact.
+    let first = nurbs.knots.first().copied().unwrap_or(0);
+    let exact = |t: &i64| t.checked_sub(first).filter(|t| *t < 1 << 53).map_or(f64::NAN, |t| t as f64);
+    let knots = nurbs.knots.iter().map(exact).collect();
     let points: Vec<Position> = nurbs.points.iter().map(|units| decimals.position(units)).collect();
     let weights = match &nurbs.weights {
         None => vec![1.0; points.len()],
         Some(weights) => weights.iter().map(|w| w.to_f64()).collect(),
     };
     Nurbs::new(nurbs.degree, knots, points, weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::{Program, WrittenNurbs};
+    use crate::units::{Axes, MAX_AXES};
+
+    #[test]
+    fn small_spans_behind_a_large_one_stay_exact() {
+        // PL = 3000000000, then three of 0.000001: in units of the last decimal 3·10¹⁵ and 1.
+        let far = 3_000_000_000_000_000;
+        let knots = vec![0, 0, 0, 0, far, far + 1, far + 2, far + 3, far + 3, far + 3, far + 3];
+        let nurbs = WrittenNurbs {
+            degree: 3,
+            knots,
+            knot_digits: 6,
+            points: (0..7).map(|i| [i, 0, 0, 0, 0, 0]).collect(),
+            weights: None,
+            lines: Vec::new(),
+        };
+        let program = Program { name: String::new(), axes: Axes::xyza(), steps: Vec::new() };
+        let decimals = Decimals { program, digits: [6; MAX_AXES] };
+        let spline = to_nurbs(&decimals, &nurbs).unwrap();
+        let lengths: Vec<f64> = spline.beziers().map(|(_, length)| length).collect();
+        assert_eq!(lengths, [far as f64, 1.0, 1.0, 1.0]);
+        let beyond = WrittenNurbs { knots: nurbs.knots.iter().map(|t| t * 10).collect(), ..nurbs };
+        assert!(to_nurbs(&decimals, &beyond).is_err(), "a float cannot subtract these");
+    }
 }

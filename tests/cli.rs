@@ -64,6 +64,8 @@ fn bad_input_ends_with_2_and_touches_nothing() {
     fs::write(at.join("latin.toml"), b"name = \"Fr\xe4ser\"\n").expect("written");
     fs::write(at.join("old.mpf"), "old").expect("written");
     fs::create_dir(at.join("sub")).expect("made");
+    fs::copy(mill(), at.join("mill.toml")).expect("copied");
+    fs::write(at.join("mine.toml"), "extends = \"mazak\"\n").expect("written");
     let mill = mill();
     let cases: &[&[&str]] = &[
         &["compile", "empty.toml", "--to", "sinumerik", "-o", "old.mpf"],
@@ -76,6 +78,9 @@ fn bad_input_ends_with_2_and_touches_nothing() {
         &["compile", &mill, "--to", "sinumerik", "--tolerance", "1e-9", "-o", "old.mpf"],
         &["compile", &mill, "--to", "sinumerik", "-o", "sub"],
         &["compile", &mill, "--to", "sinumerik", "-o", "none/there.mpf"],
+        &["compile", "mill.toml", "--to", "sinumerik", "-o", "mill.toml"],
+        &["compile", "mill.toml", "--to", "mine.toml", "-o", "mine.toml"],
+        &["compile", &mill, "--to", "sinumerik", "-o", ""],
         &["compile", &mill],
         &["verify", "none.mpf", "--against", &mill, "--to", "sinumerik"],
         &["interpolate", "empty.toml"],
@@ -97,7 +102,7 @@ fn bad_input_ends_with_2_and_touches_nothing() {
         .map(|e| e.file_name().to_string_lossy().into_owned())
         .collect();
     left.sort();
-    assert_eq!(left, ["empty.toml", "latin.toml", "old.mpf", "sub"]);
+    assert_eq!(left, ["empty.toml", "latin.toml", "mill.toml", "mine.toml", "old.mpf", "sub"]);
 }
 
 #[test]

@@ -148,3 +148,25 @@ fn a_wrong_block_number_is_refused() {
         assert_eq!(errors.0[0].id, "block-number-differs");
     }
 }
+
+/// Near a tip the surface shrinks to nothing, and with it the distance that a wrong A makes there.
+#[test]
+fn a_wrong_angle_near_a_tip_is_refused() {
+    let mazak = machine("extends = \"mazak\"\n");
+    let cutter = "D1 = 20\nS = 30\nC = -45\nr = 8\nlength = 9.9999\nlaw = \"constant-lead\"";
+    let input = input(cutter, "method = \"odd-even\"\ndl = 20");
+    let program = compiled(&input, &mazak, mazak.dialect.motion("linear")).expect("it compiles").text;
+    let changed = program.replace("A33.0794", "A82.0794");
+    assert_ne!(program, changed);
+    assert_eq!(verified(&input, &changed, &mazak).expect_err("refused").0[0].id, "point-differs");
+}
+
+#[test]
+fn a_pointed_cutter_is_followed_in_a_too() {
+    let sinumerik = machine("extends = \"sinumerik\"\n");
+    let input = input("D1 = 6\nS = 30\nC = -15\nr = 8\nlength = 11.196", "");
+    let output = compiled(&input, &sinumerik, None).expect("it compiles");
+    // A counts at a twentieth of the greatest radius, 0.15 mm, at least: 0.001 mm there are 0.0067 rad.
+    let rad = output.report.expect("a report").deviation.rad;
+    assert!(rad < 0.0067, "{rad}");
+}

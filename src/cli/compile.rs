@@ -16,7 +16,7 @@ pub(crate) struct Compile {
     /// A built-in machine (see `splinepost machines`) or a machine file
     #[arg(long, value_name = "MACHINE")]
     to: String,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output (-)
     #[arg(short, long, value_name = "FILE")]
     output: Option<String>,
     /// The motion for cutting pieces: auto, or one of the dialect's
@@ -41,6 +41,12 @@ impl Compile {
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         *sources = Sources::new(io::read_source(&self.input)?);
         let machine = machine(&self.to, sources)?;
+        if let Some(output) = &self.output
+            && (io::same_file(output, &self.input) || io::same_file(output, &self.to))
+        {
+            let message = format!("{output} is what is read; it is not written over");
+            return Err(Diagnostic::error("output-is-input", message).into());
+        }
         let language = language(self.from.as_deref(), sources)?;
         let options = Options {
             motion: motion(self.motion.as_deref(), &machine)?,
@@ -58,8 +64,8 @@ impl Compile {
             failure.diagnostics
         })?;
         match &self.output {
-            Some(path) => io::write_file(path, &output.text)?,
-            None => io::print(&output.text)?,
+            Some(path) if path != "-" => io::write_file(path, &output.text)?,
+            Some(_) | None => io::print(&output.text)?,
         }
         console.diagnostics(&output.warnings, sources);
         console.summary(&Summary::new(

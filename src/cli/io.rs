@@ -113,10 +113,22 @@ pub(crate) fn print(text: &str) -> Result<(), Diagnostics> {
     }
 }
 
+/// Whether two paths are one file.
+pub(crate) fn same_file(a: &str, b: &str) -> bool {
+    a != "-"
+        && b != "-"
+        && fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
+}
+
 /// Writes a file beside its target and renames it, so that it is there whole or not at all. Its mode is kept, links are
 /// followed, a device or pipe is written directly.
 pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
-    let fail = |error: &io::Error| failed("output-failed", "cannot write", path, error);
+    // Of the error the kind alone: its text may name the file beside the target.
+    let fail =
+        |error: &io::Error| failed("output-failed", "cannot write", path, &io::Error::from(error.kind()));
+    if path.is_empty() {
+        return Err(Diagnostic::error("output-failed", "the output file has no name").into());
+    }
     let target = fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
     let old = fs::metadata(&target).ok();
     if let Some(old) = &old
@@ -130,6 +142,11 @@ pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
     // A file that may not be written to is not replaced behind its owner's back.
     if old.is_some() {
         fs::OpenOptions::new().write(true).open(&target).map_err(|error| fail(&error))?;
+    }
+    let missing = target.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
+    if let Some(folder) = missing {
+        let message = format!("cannot write {path}: there is no folder {}", folder.display());
+        return Err(Diagnostic::error("output-failed", message).into());
     }
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> io::Result<()> {

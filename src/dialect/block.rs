@@ -8,6 +8,9 @@ use crate::machine::template::Template;
 use crate::source::Span;
 use std::ops::Range;
 
+/// A reader stops after so many things to tell: the rest follows from the first.
+pub const MAX_DIAGNOSTICS: usize = 10;
+
 /// One line of a text.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'t> {

@@ -39,7 +39,7 @@ use crate::geom::oddeven::{OddEven, StepError};
 use crate::ir::{Logarithmic, Method};
 use crate::source::{Source, SourceId, Span};
 use crate::tables;
-use crate::units::{Axes, Axis, Kind};
+use crate::units::{Axes, Axis, DEGREES, Kind};
 use std::ops::Range;
 use toml::Spanned;
 
@@ -100,6 +100,10 @@ pub enum Order {
     /// A pass on all flutes, then the next pass.
     Pass,
 }
+
+/// The greatest turn of A over a flute, degrees: what the narrowest control counts (Heidenhain: ±99 999.9999), less room
+/// for an index.
+const MAX_TURN: f64 = 99_000.0;
 
 /// The most passes of one kind.
 const MAX_PASSES: i64 = 1000;
@@ -284,7 +288,15 @@ impl Reader {
             law,
         };
         match LogCurve::new(cutter, 0.0) {
-            Ok(curve) => Some((curve, indices)),
+            Ok(curve) => {
+                let turn = curve.angle(curve.end()).abs() * DEGREES;
+                if !(turn <= MAX_TURN) {
+                    let message =
+                        format!("A would turn by {turn:.0} degrees; no control counts beyond {MAX_TURN}");
+                    self.error("turn-range", message, table.span());
+                }
+                Some((curve, indices))
+            }
             Err(error) => {
                 let (key, id) = match error {
                     CutterError::NotFinite(key) => (key, "not-finite"),
@@ -310,8 +322,12 @@ impl Reader {
                 vec![0.0]
             }
             (_, Some(index)) => {
-                if index.get_ref().is_empty() {
-                    self.error("flutes-range", "index names no flute", index.span());
+                if !(1..=MAX_FLUTES as usize).contains(&index.get_ref().len()) {
+                    self.error(
+                        "flutes-range",
+                        format!("index must name 1 to {MAX_FLUTES} flutes"),
+                        index.span(),
+                    );
                 }
                 let in_range = |x: f64| x.abs() <= 360.0;
                 index

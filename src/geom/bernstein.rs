@@ -142,6 +142,16 @@ impl Bernstein {
         (left, right)
     }
 
+    /// Bounds of f on \[0, 1\], after `depth` halvings; the error falls by four with each.
+    pub fn range(&self, depth: u32) -> (f64, f64) {
+        if depth == 0 || self.degree < 2 {
+            return (self.min(), self.max());
+        }
+        let (left, right) = self.halves();
+        let ((a, b), (c, d)) = (left.range(depth - 1), right.range(depth - 1));
+        (a.min(c), b.max(d))
+    }
+
     /// f(t).
     pub fn eval(&self, t: f64) -> f64 {
         let mut c = self.c;
@@ -186,6 +196,13 @@ mod tests {
         let product = f.times(&g).derivative();
         let leibniz = f.derivative().times(&g).combined(1.0, &f.times(&g.derivative()), 1.0);
         assert_relative_eq!(product.eval(0.3), leibniz.eval(0.3), epsilon = 1e-13);
+    }
+
+    #[test]
+    fn ranges_close_in_on_the_extremes() {
+        // 4t(1−t) has its greatest value 1 at ½; its coefficients say 2.
+        let f = Bernstein::new(&[0.0, 2.0, 0.0]);
+        assert_eq!((f.max(), f.range(8)), (2.0, (0.0, 1.0)));
     }
 
     #[test]

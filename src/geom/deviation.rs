@@ -36,8 +36,9 @@
 //!
 //! # Rounding
 //!
-//! Every bound is raised by 64 ε (ε = 2.2e-16) of the greatest angle met, at the radius: the functions round some 20
-//! times, each by at most ε/2 of a number no greater than that, and `libm`'s logarithm is within one ε.
+//! Every bound is raised by 64 ε (ε = 2.2e-16) of the greatest angle met, index included, at the radius, by 64 ε of the
+//! greatest products in g, and ΔY and ΔZ by 64 ε of the greatest coordinate: the functions round some 20 times, each by at
+//! most ε/2 of a number no greater than that, and `libm`'s logarithm is within one ε.
 
 use super::bernstein::Bernstein;
 use super::bezier::Bezier;
@@ -49,6 +50,9 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Halving stops here: an interval of 2⁻¹⁶ whose bound is still loose is taken as it is.
 const MAX_DEPTH: u32 = 16;
+
+/// And here: after so many intervals each further one is taken as it is, which is still a bound.
+const MAX_SPANS: usize = 4096;
 
 /// An upper bound on a deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +83,9 @@ pub enum OrderError {
     /// 1 + βX is not positive on the piece: the cutter ends before.
     #[error("the path leaves the cutter")]
     LeavesCutter,
+    /// A number of the path is not finite.
+    #[error("the path has a number that is not finite")]
+    NotFinite,
 }
 
 /// The bound for a straight piece in (X, A), A in radians without the index, X rising; Y and Z on the cone exactly.
@@ -97,7 +104,7 @@ pub fn log_chord(curve: &LogCurve, (x0, a0): (f64, f64), (x1, a1): (f64, f64)) -
         (f0.min(f1), f0.max(f1) + sag)
     };
     let rad = low.abs().max(high.abs()) + ROUNDING * a0.abs().max(a1.abs());
-    Bound { mm: rad * curve.radius(x0).max(curve.radius(x1)), rad }
+    Bound { mm: rad * curve.metric_radius(x0).max(curve.metric_radius(x1)), rad }
 }
 
 /// What is needed of a piece on one interval of t.
@@ -158,13 +165,23 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
     let g_noise =
         ROUNDING * (quotient_rule(&a).max_abs() * q.max_abs() + k.abs() * forward.max_abs() * d.max_abs());
 
+    // `min` and `max` of floats pass over NaN, so that it has to be met here.
+    let all = [&x, &a, &y, &z, &d, &q, &g, &forward];
+    if !all.iter().all(|f| f.coefficients().iter().all(|c| c.is_finite())) {
+        return Err(OrderError::NotFinite);
+    }
+    // A − index, Y − X tan C − shift and so on are differences, and each of their terms rounds.
+    let greatest = greatest + (curve.index / DEGREES).abs();
+    let (y_noise, z_noise) = (ROUNDING * terms(piece, 1), ROUNDING * terms(piece, 2));
     let mut bound = Bound::ZERO;
     let mut seen: f64 = 0.0;
+    let mut spans = 0;
     let mut stack = vec![(Span { x, a, y, z, d, q, g, forward }, 0u32)];
     while let Some((span, depth)) = stack.pop() {
         let (d_min, q_min) = (span.d.min(), span.q.min());
         let width = 1.0 / f64::from(1u32 << depth);
-        let settled = depth == MAX_DEPTH;
+        spans += 1;
+        let settled = depth == MAX_DEPTH || MAX_SPANS < spans;
         if d_min <= 0.0 || q_min <= 0.0 {
             if settled {
                 return Err(OrderError::LeavesCutter);
@@ -172,7 +189,7 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
         } else {
             let at = |x: f64, a: f64, d: f64| {
                 let rad = (a / d - curve.angle(x / d)).abs();
-                (rad, rad * curve.radius(x / d))
+                (rad, rad * curve.metric_radius(x / d))
             };
             let first = at(span.x.start(), span.a.start(), span.d.start());
             let last = at(span.x.end(), span.a.end(), span.d.end());
@@ -185,8 +202,8 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
             let d_max = span.d.max();
             let x_most = if 0.0 <= x_max { x_max / d_min } else { x_max / d_max };
             let x_least = if x_min <= 0.0 { x_min / d_min } else { x_min / d_max };
-            let radius = curve.radius(x_most).max(curve.radius(x_least));
-            let (dy, dz) = (span.y.max_abs() / d_min, span.z.max_abs() / d_min);
+            let radius = curve.metric_radius(x_most).max(curve.metric_radius(x_least));
+            let (dy, dz) = ((span.y.max_abs() + y_noise) / d_min, (span.z.max_abs() + z_noise) / d_min);
             let mm = (rad * radius * rad * radius + dy * dy + dz * dz).sqrt();
             seen = seen.max(first.1).max(last.1);
             let tight = mm <= 1.02 * (seen * seen + dy * dy + dz * dz).sqrt() + 1.0e-9;
@@ -204,6 +221,11 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
         stack.push((left, depth + 1));
     }
     Ok(bound)
+}
+
+/// The greatest number that takes part in a piece's distance from the cone along one axis: coordinate and X, weighted.
+fn terms(piece: &Bezier, axis: usize) -> f64 {
+    piece.numerator(axis).max_abs() + piece.numerator(0).max_abs()
 }
 
 /// How the distance of two positions is measured: mm for a linear axis, the arc at `radius` for a rotary one.
@@ -251,27 +273,33 @@ impl Metric {
 /// which rises because that of the control points does. By the convex hull no point of the piece is farther from
 /// its projection than a control point from its own.
 ///
+/// `reached` is how far along the segment the pieces before have come; each piece takes it on.
+///
 /// # Errors
-/// The control points run back along the segment by more than `slack` mm.
+/// The control points run back along the segment by more than `slack` mm, or are not finite.
 pub fn segment_piece(
     metric: &Metric,
     (from, to): (&Position, &Position),
     piece: &Bezier,
     slack: f64,
+    reached: &mut f64,
 ) -> Result<Bound, OrderError> {
     let along = metric.scaled_difference(to, from);
     let dot = |a: &Position, b: &Position| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let length = dot(&along, &along).sqrt();
-    let (mut bound, mut last) = (Bound::ZERO, f64::NEG_INFINITY);
+    let mut bound = Bound::ZERO;
     for point in piece.control_points() {
         let d = metric.scaled_difference(point, from);
         let s = if length == 0.0 { 0.0 } else { dot(&d, &along) / length };
-        if s < last - slack {
+        if !s.is_finite() {
+            return Err(OrderError::NotFinite);
+        }
+        if s < *reached - slack {
             return Err(OrderError::RunsBack);
         }
         // Running back within the slack costs what it runs back.
-        let back = f64::max(last - s, 0.0);
-        last = last.max(s);
+        let back = f64::max(*reached - s, 0.0);
+        *reached = reached.max(s);
         let share = if length == 0.0 { 0.0 } else { (s / length).clamp(0.0, 1.0) };
         let foot: Position = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
         let distance = metric.distance(point, &foot);
@@ -285,6 +313,10 @@ mod tests {
     use super::super::logcurve::tests::paper;
     use super::super::logcurve::{Cutter, LogCurve};
     use super::*;
+
+    fn reached_nothing() -> f64 {
+        f64::NEG_INFINITY
+    }
 
     /// The greatest distance at 4001 values of t, straight from the definition.
     fn sampled(curve: &LogCurve, piece: &Bezier) -> f64 {
@@ -340,6 +372,36 @@ mod tests {
         let metric = Metric::new(&[Kind::Linear], 1.0);
         let line = Bezier::line(curve.position(30.0), curve.position(0.0));
         let ends = (&curve.position(0.0), &curve.position(30.0));
-        assert_eq!(segment_piece(&metric, ends, &line, 1e-9), Err(OrderError::RunsBack));
+        assert_eq!(
+            segment_piece(&metric, ends, &line, 1e-9, &mut reached_nothing()),
+            Err(OrderError::RunsBack)
+        );
+    }
+
+    #[test]
+    fn pieces_that_creep_back_are_seen_together() {
+        let metric = Metric::new(&[Kind::Linear], 1.0);
+        let at = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let (slack, mut reached) = (1.0e-3, f64::NEG_INFINITY);
+        // Each piece goes back by half the slack: the first may, the third may not.
+        let results: Vec<bool> = [(0.0, 5.0), (5.0, 4.9995), (4.9995, 4.999), (4.999, 4.9985)]
+            .map(|(from, to)| {
+                let piece = Bezier::line(at(from), at(to));
+                segment_piece(&metric, (&at(0.0), &at(10.0)), &piece, slack, &mut reached).is_ok()
+            })
+            .to_vec();
+        assert_eq!(results, [true, true, true, false]);
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_no_proof() {
+        let curve = LogCurve::new(paper(), 0.0).unwrap();
+        let mut piece = Bezier::line(curve.position(0.0), curve.position(30.0));
+        piece.points[1][3] = f64::NAN;
+        assert_eq!(log_piece(&curve, &piece), Err(OrderError::NotFinite));
+        let metric = Metric::new(&[Kind::Linear; 4], 1.0);
+        let ends = (&curve.position(0.0), &curve.position(30.0));
+        let result = segment_piece(&metric, ends, &piece, 1e-9, &mut reached_nothing());
+        assert_eq!(result, Err(OrderError::NotFinite));
     }
 }

@@ -27,9 +27,12 @@ const C: f64 = 0.325_411_344_339_772_1;
 /// A fit of more pieces than this is given up.
 pub const MAX_PIECES: usize = 1_000_000;
 
-/// The tolerance cannot be reached with [`MAX_PIECES`] pieces.
+/// A fit that has no bound at all by this many pieces is given up.
+const MAX_BLIND: usize = 1024;
+
+/// The tolerance cannot be reached: rounding or [`MAX_PIECES`] stand before it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the tolerance of {tolerance} mm cannot be reached with a million pieces")]
+#[error("the tolerance of {tolerance} mm cannot be reached")]
 pub struct FitError {
     /// What was asked, mm.
     pub tolerance: f64,
@@ -111,6 +114,7 @@ fn fewest_pieces<P>(
     };
     let mut n = 1;
     let (mut worst, mut pieces) = fit(n);
+    let mut stalled = 0;
     while !(worst <= tolerance) {
         let ratio = (worst / tolerance).min(1.0e30);
         let growth = match order as u32 {
@@ -119,10 +123,16 @@ fn fewest_pieces<P>(
             _ => cbrt(ratio.sqrt()),
         };
         n = if growth.is_finite() { (0.95 * n as f64 * growth) as usize } else { 2 * n }.max(n + 1);
-        if MAX_PIECES < n {
+        if MAX_PIECES < n || (worst == f64::INFINITY && MAX_BLIND < n) {
             return Err(FitError { tolerance });
         }
+        let last = worst;
         (worst, pieces) = fit(n);
+        // Rounding sets a floor: where more and more pieces gain nothing, no number of them will do.
+        stalled = if last.is_finite() && last <= worst { stalled + 1 } else { 0 };
+        if 8 < stalled {
+            return Err(FitError { tolerance });
+        }
     }
     while 1 < n {
         let (worst, fewer) = fit(n - 1);

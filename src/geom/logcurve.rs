@@ -20,6 +20,9 @@
 //! **Distance at the cutter's surface**, in mm, between two positions of equal X is √((R ΔA)² + ΔY² + ΔZ²) with
 //! R = D1/2 + X tan C and ΔA in radians.
 //!
+//! Towards a tip R shrinks to nothing, and so would the distance; there A counts at a twentieth of the greatest radius
+//! ([`LogCurve::metric_radius`]).
+//!
 //! The path is that of the contact point. The wheel's radius and profile are not modelled.
 
 use super::elementary::{atan, cos, exp_m1, ln_1p, ln_1p_over, sin, tan};
@@ -209,6 +212,12 @@ impl LogCurve {
         0.5 * self.cutter.d1 + x * self.tan_c
     }
 
+    /// The radius at which A counts, mm: that of the cutter, but no less than a twentieth of the greatest. Towards a tip
+    /// the surface shrinks to nothing, and the distance at the surface alone would let A do anything there.
+    pub fn metric_radius(&self, x: f64) -> f64 {
+        self.radius(x).max(0.05 * self.max_radius())
+    }
+
     /// The greatest radius between X = 0 and the end, mm.
     pub fn max_radius(&self) -> f64 {
         self.radius(0.0).max(self.radius(self.end()))
@@ -248,9 +257,8 @@ impl LogCurve {
 
     /// The greatest surface distance that 1 mm of X makes anywhere on the curve.
     pub fn speed_bound(&self) -> f64 {
-        // R dA/dX = (D1/2)(1 + bX) k/(1 + βX) is k D1/2 for constant helix and monotone in X for constant lead.
-        let surface = |x: f64| self.radius(x) * self.slope(x).abs();
-        let turn = surface(0.0).max(surface(self.end()));
+        // dA/dX is monotone; R is at most the greatest radius.
+        let turn = self.max_radius() * self.slope(0.0).abs().max(self.slope(self.end()).abs());
         (self.length_per_x() * self.length_per_x() + turn * turn).sqrt()
     }
 

@@ -4,7 +4,7 @@ use super::keys::{AxesFile, AxisFile, DigitsFile, File, KEYS, SplineFile};
 use super::template::Template;
 use super::{AxisLimits, BUILT_IN, Digits, Frame, Machine, RotaryFeed, Spline, Text};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect;
+use crate::dialect::{self, Form};
 use crate::source::{SourceId, Span};
 use crate::tables::{self, nearest};
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
@@ -106,6 +106,16 @@ impl Reader {
         let axes_file = file.axes.unwrap_or_default();
         let axes = self.axes(&axes_file, base);
         let digits = self.digits(&file.digits.unwrap_or_default(), base.map(|b| b.digits));
+        if let (Some(digits), true) =
+            (digits, dialect.motions.iter().any(|m| m.form == Form::Polynomial { closing: true }))
+            && 8 < digits.linear.max(digits.rotary)
+        {
+            let message = format!(
+                "{} closes its spline blocks in 8 decimals; positions cannot have more",
+                dialect.name
+            );
+            self.diagnostics.push(Diagnostic::error("digits-range", message));
+        }
         let text_file = file.text.unwrap_or_default();
         let text = Text {
             point_always: self.or(

@@ -26,6 +26,9 @@ const SMOOTH_JOINT: f64 = 0.1;
 /// The greatest coordinate, mm or degrees, of the narrowest control (Heidenhain: ±99 999.9999).
 const GREATEST: f64 = 99_999.999_9;
 
+/// How often a piece is halved before its control points are taken for its range: the error is below a 4000th.
+const RANGE_HALVINGS: u32 = 6;
+
 /// Checks a program against a machine.
 ///
 /// # Errors
@@ -81,10 +84,10 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
             .hint("try it on the control first; a machine file with [spline] axes = [...] says that it is allowed"),
         );
     }
-    if CLOSING_DIGITS < coefficient_digits {
+    if CLOSING_SIGNIFICANT < coefficient_digits {
         let message = format!(
             "a coefficient has {coefficient_digits} digits when it is written so that every block starts exactly where \
-             the one before ended; the control keeps {CLOSING_DIGITS}"
+             the one before ended; the control keeps {CLOSING_SIGNIFICANT}"
         );
         found.push(Diagnostic::warning("coefficient-digits", message));
     }
@@ -108,7 +111,7 @@ pub fn name(name: &str, machine: &Machine) -> Option<Diagnostic> {
 }
 
 /// How many digits a control keeps of a coefficient of blocks that state their start through them (Heidenhain SPL).
-const CLOSING_DIGITS: usize = 9;
+const CLOSING_SIGNIFICANT: usize = 9;
 
 /// How many axes such a block moves (Heidenhain SPL: two to five).
 const CLOSING_AXES: usize = 5;
@@ -224,19 +227,21 @@ impl Reach {
                 point(&low);
                 point(&high);
             }
-            Written::Polynomial(polynomial) => {
-                let mut start = polynomial.start;
-                for block in &polynomial.blocks {
-                    // The control points enclose the block.
-                    for position in block.to_bezier(&decimals.digits, &start).control_points() {
-                        for (axis, x) in position.iter().enumerate().take(axes) {
-                            self.take(axis, *x);
-                        }
-                    }
-                    start = block.end;
+            Written::Polynomial(_) | Written::Nurbs(_) => limits::each_piece(decimals, curve, |piece| {
+                for axis in 0..axes {
+                    // A rational piece lies within its control points; a polynomial one is looked at more closely.
+                    let (low, high) = if piece.is_polynomial() {
+                        piece.numerator(axis).range(RANGE_HALVINGS)
+                    } else {
+                        let all = piece.control_points().iter().map(|p| p[axis]);
+                        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                            (low.min(x), high.max(x))
+                        })
+                    };
+                    self.take(axis, low);
+                    self.take(axis, high);
                 }
-            }
-            Written::Nurbs(nurbs) => nurbs.points.iter().for_each(point),
+            }),
         }
     }
 
@@ -309,20 +314,22 @@ pub fn moving(curve: &Written) -> Vec<usize> {
     (0..MAX_AXES).filter(|i| moved[*i]).collect()
 }
 
-/// The greatest change of direction between polynomial blocks, degrees.
+/// The greatest change of direction between the pieces of a spline, degrees; mm and degrees count alike, as the axes of
+/// the control do.
 fn joint_angle(decimals: &Decimals, curve: &Written) -> f64 {
-    let Written::Polynomial(polynomial) = curve else { return 0.0 };
     let direction = |from: &Position, to: &Position| -> Position { std::array::from_fn(|i| to[i] - from[i]) };
     let dot = |a: &Position, b: &Position| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (mut worst, mut start, mut last) = (0.0f64, polynomial.start, None::<Bezier>);
-    for block in &polynomial.blocks {
-        let piece = block.to_bezier(&decimals.digits, &start);
+    let (mut worst, mut last) = (0.0f64, None::<Bezier>);
+    if matches!(curve, Written::Lines(_) | Written::Through(..)) {
+        return worst;
+    }
+    limits::each_piece(decimals, curve, |piece| {
         if let Some(last) = last {
             let before = direction(&last.points[last.degree - 1], &last.points[last.degree]);
             let after = direction(&piece.points[0], &piece.points[1]);
             let (a, b) = (dot(&before, &before).sqrt(), dot(&after, &after).sqrt());
             if 0.0 < a && 0.0 < b {
-                // 2 asin(|u − v|/2) keeps small angles exact; atan of the half-angle's sine and cosine is the same.
+                // The angle between unit vectors u and v is 2 asin(|u − v|/2), exact for small ones.
                 let between: Position = std::array::from_fn(|i| after[i] / b - before[i] / a);
                 let half = 0.5 * dot(&between, &between).sqrt();
                 let angle =
@@ -330,66 +337,7 @@ fn joint_angle(decimals: &Decimals, curve: &Written) -> f64 {
                 worst = worst.max(angle * DEGREES);
             }
         }
-        last = Some(piece);
-        start = block.end;
-    }
+        last = Some(*piece);
+    });
     worst
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ir::{Cut, Located, Program, Role, ThroughKind, WrittenPoints, WrittenPolynomial};
-    use crate::source::{SourceId, Span};
-
-    fn ids(curve: Written) -> Vec<&'static str> {
-        let machine = Machine::built_in("heidenhain").unwrap();
-        let step = Step::Cut(Cut { feed: Some(Decimal::new(100, 0)), role: Role::Path, curve });
-        let steps = vec![Located { step, span: Span::new(SourceId::INPUT, 0..0) }];
-        let program = Program { name: "P".to_owned(), axes: machine.axes, steps };
-        let decimals = Decimals { program, digits: machine.axis_digits() };
-        match check(decimals, &machine) {
-            Ok(legal) => legal.warnings.0.iter().map(|d| d.id).collect(),
-            Err(errors) => errors.0.iter().map(|d| d.id).collect(),
-        }
-    }
-
-    fn polynomial(pl: Decimal, a2: Decimal, a4: Decimal) -> Written {
-        let mut coefficients = [[Decimal::ZERO; 4]; MAX_AXES];
-        coefficients[0] = [a2, Decimal::ZERO, a4, Decimal::ZERO];
-        let block = PolynomialBlock { pl, end: [10_000, 0, 0, 0, 0, 0], coefficients, line: 0 };
-        Written::Polynomial(WrittenPolynomial { start: [0; MAX_AXES], blocks: vec![block] })
-    }
-
-    #[test]
-    fn a_form_that_the_dialect_has_no_word_for_is_refused() {
-        let points = WrittenPoints {
-            start: [0; MAX_AXES],
-            stride: 4,
-            units: vec![10_000, 0, 0, 0],
-            lines: Vec::new(),
-        };
-        assert_eq!(ids(Written::Lines(points.clone())), [""; 0]);
-        assert_eq!(ids(Written::Through(ThroughKind::Akima, points)), ["form-not-in-dialect"]);
-        let (zero, one) = (Decimal::ZERO, Decimal::new(1, 0));
-        assert_eq!(ids(polynomial(one, zero, zero)), [""; 0]);
-        assert_eq!(ids(polynomial(Decimal::new(2, 0), zero, zero)), ["form-not-in-dialect"]);
-        assert_eq!(ids(polynomial(one, zero, one)), ["form-not-in-dialect"]);
-        assert_eq!(ids(polynomial(one, Decimal::new(123_456_789, 8), zero)), [""; 0]);
-        assert_eq!(ids(polynomial(one, Decimal::new(1_234_567_891, 9), zero)), ["coefficient-digits"]);
-    }
-
-    #[test]
-    fn coefficients_that_state_the_start_follow_from_those_that_follow_it() {
-        // Block 2 of the reference curve: y from 0 to 14 with a₂ = 36, a₃ = −22.
-        let Written::Polynomial(WrittenPolynomial { mut blocks, .. }) =
-            polynomial(Decimal::new(1, 0), Decimal::ZERO, Decimal::ZERO)
-        else {
-            panic!()
-        };
-        blocks[0].coefficients[1] = [Decimal::new(36, 0), Decimal::new(-22, 0), Decimal::ZERO, Decimal::ZERO];
-        blocks[0].end[1] = 140_000;
-        let k = closing_coefficients(&blocks[0], 1, 0, 4).unwrap();
-        assert_eq!(k, [Decimal::new(22, 0), Decimal::new(-30, 0), Decimal::new(-6, 0)]);
-    }
 }

@@ -22,11 +22,33 @@ pub fn interpolate(
     asked: f64,
 ) -> Result<Program<f64, Curve>, Diagnostics> {
     let mut steps = Vec::with_capacity(intent.program.steps.len());
+    // Flutes and passes are one curve, indexed and shifted: it is fitted once.
+    let mut fitted: Option<(Logarithmic, Vec<Bezier>)> = None;
     for located in &intent.program.steps {
         let step = match &located.step {
             Step::Cut(Cut { feed, role, curve: Curve::Logarithmic(log) }) => {
+                let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
+                if let Some((_, pieces)) = fitted.as_ref().filter(|(known, _)| *known == base) {
+                    let curve = Curve::Polynomial(placed(pieces, log));
+                    steps.push(Located {
+                        step: Step::Cut(Cut { feed: *feed, role: *role, curve }),
+                        span: located.span,
+                    });
+                    continue;
+                }
                 let curve = follow(log, form, machine, tolerance, asked)
                     .map_err(|error| out_of_reach(error, located.span))?;
+                let curve = match curve {
+                    Curve::Polynomial(pieces) => {
+                        let here = placed(&pieces, log);
+                        fitted = Some((base, pieces));
+                        Curve::Polynomial(here)
+                    }
+                    curve @ (Curve::Lines(_)
+                    | Curve::Nurbs(_)
+                    | Curve::Through(..)
+                    | Curve::Logarithmic(_)) => curve,
+                };
                 Step::Cut(Cut { feed: *feed, role: *role, curve })
             }
             step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
@@ -44,7 +66,7 @@ fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
         .hint("allow a larger tolerance")
 }
 
-/// One curve as lines, pieces or points.
+/// One curve as lines or points where it stands, or as pieces of the curve that all flutes share.
 fn follow(
     log: &Logarithmic,
     form: Form,
@@ -52,6 +74,7 @@ fn follow(
     tolerance: f64,
     asked: f64,
 ) -> Result<Curve, FitError> {
+    let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
     match (log.method, form) {
         (_, Form::Through(kind)) => {
             Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter())))
@@ -65,10 +88,10 @@ fn follow(
         }
         (Method::Auto | Method::Direct, Form::Polynomial { closing }) => {
             let degree = if closing { 3 } else { machine.spline.poly_degree };
-            pieces(log, degree, machine.spline.shared_parameter, tolerance)
+            pieces(&base, degree, machine.spline.shared_parameter, tolerance)
         }
         (Method::Auto | Method::Direct, Form::Nurbs) => {
-            pieces(log, 3, machine.spline.shared_parameter, tolerance)
+            pieces(&base, 3, machine.spline.shared_parameter, tolerance)
         }
     }
 }
@@ -79,6 +102,21 @@ fn polyline(log: &Logarithmic, points: impl Iterator<Item = (f64, f64)>) -> Poly
         line.push(&log.curve.position_with(x, a));
     }
     line
+}
+
+/// Pieces of the base curve on its flute and pass.
+fn placed(pieces: &[Bezier], log: &Logarithmic) -> Vec<Bezier> {
+    let [y, z] = log.curve.shift;
+    let place = |piece: &Bezier| {
+        let mut piece = *piece;
+        for point in &mut piece.points[..=piece.degree] {
+            point[1] += y;
+            point[2] += z;
+            point[3] += log.curve.index;
+        }
+        piece
+    };
+    pieces.iter().map(place).collect()
 }
 
 /// The fewest pieces: X linear in the parameter where that needs no more of them, since such blocks mean the same

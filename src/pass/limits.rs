@@ -70,7 +70,7 @@ pub fn speeds(decimals: &Decimals, machine: &Machine) -> Diagnostics {
 }
 
 /// Every piece of a curve in decimals.
-fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl FnMut(&Bezier)) {
+pub(super) fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl FnMut(&Bezier)) {
     match curve {
         Written::Lines(line) | Written::Through(_, line) => {
             let mut from = decimals.position(&line.start);

@@ -31,11 +31,11 @@ use crate::ir::{
 use crate::machine::Machine;
 use crate::units::{DEGREES, Kind, MAX_AXES};
 
-/// Nine decimals of a coefficient are as many as a float of a few hundred holds.
+/// The most decimals of a coefficient.
 const MAX_COEFFICIENT_DIGITS: u8 = 12;
 
 /// The digits of an SPL coefficient behind the point at exponent 0.
-const CLOSING_DIGITS: u8 = 8;
+const CLOSING_DECIMALS: u8 = 8;
 
 /// A number is too large to be written, or not finite.
 struct Unwritable;
@@ -87,10 +87,21 @@ pub fn quantise(
                 .at(span, "")
                 .into());
         }
+        if let Step::Spindle(rpm) = &step
+            && rpm.is_zero()
+        {
+            let message = "the spindle speed rounds to zero";
+            return Err(Diagnostic::error("spindle-rounds-to-zero", message).at(span, "").into());
+        }
         steps.push(Located { step, span });
     }
     let program = Program { name: program.name, axes: program.axes, steps };
     Ok(Decimals { program, digits })
+}
+
+/// A coefficient with so many decimals, or as many as a float of its size holds.
+fn coefficient(a: f64, digits: u8) -> Option<Decimal> {
+    (0..=digits).rev().find_map(|digits| Decimal::round(a, digits))
 }
 
 impl Quantiser<'_> {
@@ -183,7 +194,7 @@ impl Quantiser<'_> {
                     let a = piece.power_basis(axis, 1.0);
                     let mut rounded = [Decimal::ZERO; COEFFICIENTS];
                     for (rounded, a) in rounded.iter_mut().zip(&a[2..]).take(piece.degree.saturating_sub(1)) {
-                        *rounded = Decimal::round(*a, self.coefficient_digits[axis]).ok_or(Unwritable)?;
+                        *rounded = coefficient(*a, self.coefficient_digits[axis]).ok_or(Unwritable)?;
                     }
                     rounded
                 };
@@ -218,8 +229,8 @@ impl Quantiser<'_> {
         let k2 = 3.0 * (p1 - 2.0 * p2 + p3) + 3.0 * (delta_s - delta_e);
         let gap = Decimal::new(start, digits).minus(Decimal::new(end, digits)).ok_or(Unwritable)?;
         // e from 0 while q = 10^(e−8) still divides the positions' last decimal.
-        for e in 0..=CLOSING_DIGITS.checked_sub(digits).ok_or(Unwritable)? {
-            let q_digits = CLOSING_DIGITS - e;
+        for e in 0..=CLOSING_DECIMALS.checked_sub(digits).ok_or(Unwritable)? {
+            let q_digits = CLOSING_DECIMALS - e;
             let (Some(k1), Some(k2)) = (Decimal::round(k1, q_digits), Decimal::round(k2, q_digits)) else {
                 continue;
             };

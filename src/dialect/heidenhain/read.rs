@@ -21,7 +21,7 @@ use crate::decimal::{Decimal, Spelling};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Line, Lines, Met, Numbering, block_number};
+use crate::dialect::block::{Frame, Line, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
 use crate::ir::{COEFFICIENTS, PolynomialBlock, Step, Written, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -146,7 +146,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
                 None => reader.unknown(body, start),
             },
         }
-        if 100 < reader.assembler.diagnostics.0.len() {
+        if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
     }

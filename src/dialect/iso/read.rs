@@ -11,7 +11,7 @@ use super::{Offset, is_block};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostics, Warned};
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Lines, Met, Numbering, block_number};
+use crate::dialect::block::{Frame, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
 use crate::dialect::{Form, Reading};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
 use crate::machine::Machine;
@@ -155,7 +155,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             }
         }
         reader.block(body.strip_suffix(';').unwrap_or(body), start, line.number, span);
-        if 100 < reader.assembler.diagnostics.0.len() {
+        if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
     }

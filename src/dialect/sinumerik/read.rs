@@ -7,7 +7,7 @@ use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Lines, Met, Numbering, block_number};
+use crate::dialect::block::{Frame, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
 use crate::ir::{
     COEFFICIENTS, Decimals, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
     WrittenPolynomial,
@@ -127,7 +127,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
         let code = body.split(';').next().unwrap_or_default();
         reader.block(code, start, line.number, span);
-        if 100 < reader.assembler.diagnostics.0.len() {
+        if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
     }

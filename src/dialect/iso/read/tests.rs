@@ -30,7 +30,14 @@ fn curve(reading: &Reading) -> Nurbs {
     let decimals = &reading.decimals;
     let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step {
         Step::Cut(cut) => match &cut.curve {
-            Written::Nurbs(nurbs) => Some(crate::verify::to_nurbs(decimals, nurbs).unwrap()),
+            Written::Nurbs(nurbs) => {
+                // Its knots are in units of their last decimal; here they are wanted as written.
+                let spline = crate::verify::to_nurbs(decimals, nurbs).unwrap();
+                let unit = crate::decimal::power_of_ten(nurbs.knot_digits) as f64;
+                let knots = spline.knots().iter().map(|t| t / unit).collect();
+                let (points, weights) = (spline.points().to_vec(), spline.weights().to_vec());
+                Some(Nurbs::new(spline.degree(), knots, points, weights).unwrap())
+            }
             Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => None,
         },
         Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
