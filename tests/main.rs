@@ -9,6 +9,7 @@
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
+//! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `readme` | the README's commands |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
@@ -17,6 +18,7 @@ mod cli;
 mod damage;
 mod errors;
 mod golden;
+mod machine;
 mod oracle;
 mod paper;
 mod readme;
