@@ -9,6 +9,7 @@
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
+//! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
 //! | `cli` | exit codes, files, streams |
@@ -18,6 +19,7 @@ mod cli;
 mod damage;
 mod errors;
 mod golden;
+mod machine;
 mod oracle;
 mod paper;
 mod readme;

@@ -1,0 +1,170 @@
+//! Golden programs with one fault each, and the rules that must find it: these and no others.
+//!
+//! Some lines name two rules, where one fault breaks both; a line without rules is no fault, and holds a rule back from
+//! asking too much. Every rule has a fault of its own in every dialect in which it applies.
+
+mod faults;
+
+use super::words::Dialect;
+use super::{Job, KNOWN, Rule, Violation, check, golden};
+use faults::{HEIDENHAIN, MAZAK, SINUMERIK};
+use std::collections::BTreeSet;
+
+/// One change. A pattern stands where no letter, digit or point touches it; occurrences are counted from 1.
+enum Edit {
+    /// The line goes.
+    Drop(&'static str, usize),
+    /// Another text stands in its place.
+    Put(&'static str, usize, &'static str),
+    /// A line before its line.
+    Before(&'static str, usize, &'static str),
+    /// A line after its line.
+    After(&'static str, usize, &'static str),
+    /// Its line and the next change places.
+    Down(&'static str, usize),
+    /// Not the program but the machine: this axis wraps.
+    Wraps(char),
+}
+
+/// The file, what is done to it, and the rules that it then breaks, in their order.
+type Fault = (&'static str, &'static [Edit], &'static [Rule]);
+
+/// Where an occurrence begins.
+fn place(text: &str, pattern: &str, occurrence: usize) -> usize {
+    let touches = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '.');
+    let free = |at: usize| {
+        let (before, rest) = text.split_at(at);
+        !touches(before.chars().next_back()) && !touches(rest[pattern.len()..].chars().next())
+    };
+    let mut found = text.match_indices(pattern).map(|(at, _)| at).filter(|at| free(*at));
+    found
+        .nth(occurrence - 1)
+        .unwrap_or_else(|| panic!("no occurrence {occurrence} of `{pattern}` in\n{text}"))
+}
+
+/// The text before, of and after the line at a place.
+fn line_at(text: &str, at: usize) -> (&str, &str, &str) {
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let end = text[at..].find('\n').map_or(text.len(), |length| at + length + 1);
+    (&text[..start], &text[start..end], &text[end..])
+}
+
+fn apply(edit: &Edit, job: &mut Job, text: &str) -> String {
+    let split = |pattern: &str, occurrence: usize| line_at(text, place(text, pattern, occurrence));
+    match edit {
+        Edit::Drop(pattern, occurrence) => {
+            let (before, _, after) = split(pattern, *occurrence);
+            format!("{before}{after}")
+        }
+        Edit::Put(pattern, occurrence, other) => {
+            let at = place(text, pattern, *occurrence);
+            format!("{}{other}{}", &text[..at], &text[at + pattern.len()..])
+        }
+        Edit::Before(pattern, occurrence, added) => {
+            let (before, line, after) = split(pattern, *occurrence);
+            format!("{before}{added}\n{line}{after}")
+        }
+        Edit::After(pattern, occurrence, added) => {
+            let (before, line, after) = split(pattern, *occurrence);
+            format!("{before}{line}{added}\n{after}")
+        }
+        Edit::Down(pattern, occurrence) => {
+            let (before, line, after) = split(pattern, *occurrence);
+            let (next, rest) = after.split_once('\n').expect("a next line");
+            format!("{before}{next}\n{line}{rest}")
+        }
+        Edit::Wraps(axis) => {
+            job.modulo.push(*axis);
+            text.to_owned()
+        }
+    }
+}
+
+/// A golden program that breaks no rule: where it is known to lack `G43 H` in later sections, with it.
+fn sound(file: &str) -> (Job, String) {
+    let golden = golden(file);
+    if !KNOWN.iter().any(|(known, _, _)| *known == file) {
+        return (golden.job, golden.text);
+    }
+    let tool = golden.text.lines().find_map(|line| line.strip_prefix('T')?.strip_suffix(" M6"));
+    let offset = format!("G43 H{} Z", tool.expect("a tool call"));
+    let mut section = false;
+    let mut text = String::new();
+    for line in golden.text.lines() {
+        section |= line.starts_with('(');
+        if section && line.contains('Z') && !line.starts_with('(') {
+            section = false;
+            let with = if line.contains("G43") { line.to_owned() } else { line.replacen('Z', &offset, 1) };
+            text.push_str(&with);
+        } else {
+            text.push_str(line);
+        }
+        text.push('\n');
+    }
+    (golden.job, text)
+}
+
+fn damaged(file: &str, edits: &[Edit]) -> Vec<Violation> {
+    let (mut job, text) = sound(file);
+    assert_eq!(check(&job, &text), [], "{file}");
+    let text = edits.iter().fold(text, |text, edit| apply(edit, &mut job, &text));
+    check(&job, &text)
+}
+
+/// All faults, with the dialect of their files.
+fn faults() -> impl Iterator<Item = (Dialect, &'static Fault)> {
+    let of = |dialect, faults: &'static [Fault]| faults.iter().map(move |fault| (dialect, fault));
+    of(Dialect::Sinumerik, SINUMERIK)
+        .chain(of(Dialect::Heidenhain, HEIDENHAIN))
+        .chain(of(Dialect::Mazak, MAZAK))
+}
+
+#[test]
+fn every_fault_breaks_its_rule() {
+    let mut wrong = Vec::new();
+    for (at, (dialect, (file, edits, rules))) in faults().enumerate() {
+        assert_eq!(golden(file).job.dialect, dialect, "{file}");
+        let violations = damaged(file, edits);
+        let broken: BTreeSet<Rule> = violations.iter().map(|violation| violation.rule).collect();
+        if !broken.iter().eq(rules.iter()) {
+            let found: Vec<String> = violations.iter().map(|violation| format!("\n  {violation}")).collect();
+            wrong.push(format!("fault {at}, {file}: {rules:?} expected, found:{}", found.concat()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_rule_has_a_fault_of_its_own_in_every_dialect() {
+    for dialect in Dialect::ALL {
+        for rule in Rule::ALL {
+            let own = faults().any(|(of, (_, _, rules))| of == dialect && *rules == [rule]);
+            assert_eq!(own, rule.applies(dialect), "{dialect:?}: {rule:?}");
+        }
+    }
+}
+
+/// The line counts from 1, as an editor shows it; of a block of several lines it is the first.
+#[test]
+fn a_report_names_the_line() {
+    for (file, edits, expected) in [
+        (
+            "conical-mill/sinumerik.mpf",
+            [Edit::Put("Z0 F200", 1, "Z0")],
+            "16: Feed: no feed is in force for this move",
+        ),
+        (
+            "cylinder/heidenhain-spl.h",
+            [Edit::Put("A+137.8322", 1, "A+137.9")],
+            "27: Spl: A starts 0.067800 from the tool",
+        ),
+        (
+            "long-cone/mazak-g062.eia",
+            [Edit::Drop("K144.6544", 4)],
+            "23: Nurbs: the blocks with K alone are not as many as P",
+        ),
+    ] {
+        let reports: Vec<String> = damaged(file, &edits).iter().map(Violation::to_string).collect();
+        assert!(reports.iter().any(|report| report == expected), "{file}: {reports:?}");
+    }
+}
