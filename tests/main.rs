@@ -8,6 +8,7 @@
 //! | `roundtrip` | what is written reads back to the same text |
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
+//! | `grammar` | `grammar/*.ebnf` in step with readers, writers and keys |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
 //! | `readme` | the README's commands |
 //! | `cli` | exit codes, files, streams |
@@ -17,6 +18,7 @@ mod cli;
 mod damage;
 mod errors;
 mod golden;
+mod grammar;
 mod oracle;
 mod paper;
 mod readme;
