@@ -8,6 +8,7 @@
 //! | `roundtrip` | what is written reads back to the same text |
 //! | `robust` | nothing panics |
 //! | `damage` | a program changed in any word is refused |
+//! | `grammar` | `grammar/*.ebnf` in step with readers, writers and keys |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `readme` | the README's commands |
@@ -19,6 +20,7 @@ mod cli;
 mod damage;
 mod errors;
 mod golden;
+mod grammar;
 mod machine;
 mod oracle;
 mod paper;

@@ -50,7 +50,7 @@ fn signed(value: Decimal) -> String {
     String::from_utf8(out).unwrap_or_default()
 }
 
-/// What one block says: `straight = "L" { word }`, `spline = "SPL" { word }`.
+/// What one block says, L or SPL.
 struct Block {
     named: [(usize, i64); MAX_AXES],
     /// Where each of them stands.
@@ -158,7 +158,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     Ok(Warned { value: reading, warnings: warned.warnings })
 }
 
-/// `keyword = letter { letter }`, upper case
+/// The capital letters at the start of a block, which say what it is.
 #[inline]
 fn keyword(body: &str) -> &str {
     let length = body.bytes().take_while(u8::is_ascii_uppercase).count();
@@ -167,6 +167,9 @@ fn keyword(body: &str) -> &str {
 
 impl<'t> Reader<'t, '_> {
     /// One block and the lines that continue it: its words, then what they mean.
+    ///
+    /// `block = "L", [ blank, words ], { "~", end_of_line, words }
+    ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }`
     fn block(&mut self, keyword: &str, body: &'t str, start: usize, first: &Line<'t>, mut span: Span) {
         let mut block = Block::new(keyword == "SPL");
         let known = self.assembler.diagnostics.0.len();
@@ -202,7 +205,7 @@ impl<'t> Reader<'t, '_> {
         }
     }
 
-    /// `line = { { blank } word } [ "~" ] [ ";" comment ] [ "~" ]`; whether the block goes on in the next line.
+    /// `words = { { blank }, word }, { blank }, [ remark ]`; whether the block goes on in the next line, with `~`.
     #[inline]
     fn words(&mut self, text: &'t str, start: usize, block: &mut Block) -> bool {
         let (code, goes_on) = match text.strip_suffix('~') {

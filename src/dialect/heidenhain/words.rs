@@ -1,4 +1,4 @@
-//! The words of Klartext blocks as written, one parser a production.
+//! The words of Klartext blocks as written, one parser for each rule of `grammar/heidenhain.ebnf`.
 
 use crate::decimal::{Decimal, MAX_DIGITS, power_of_ten, read_decimal};
 use nom::branch::alt;
@@ -30,7 +30,7 @@ pub(super) enum Word<'t> {
     Other(&'t str),
 }
 
-/// `word = coordinate | coefficient | feed | rapid | compensation | other`
+/// `word = coordinate | coefficient | feed | rapid | compensation`, or [`other`]
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
     alt((coordinate, coefficient, feed, rapid, compensation, other)).parse(input)
@@ -50,14 +50,14 @@ fn axis(input: &str) -> IResult<&str, u8> {
     }
 }
 
-/// `number = [ "+" | "-" ] ( digits [ mark [ digits ] ] | mark digits )` with `mark = "." | ","`
+/// `number = [ "+" | "-" ], ( digits, [ mark, [ digits ] ] | mark, digits )` with `mark = "." | ","`
 #[inline]
 fn number(input: &str) -> IResult<&str, Decimal> {
     let (value, length) = read_decimal(input.as_bytes(), true).map_err(|_| failed(input))?;
     Ok((&input[length..], value))
 }
 
-/// `coordinate = axis number`
+/// `coordinate = axis, number`
 #[inline]
 fn coordinate(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, letter) = axis(input)?;
@@ -65,7 +65,7 @@ fn coordinate(input: &str) -> IResult<&str, Word<'_>> {
     Ok((rest, Word::Coordinate(letter, value)))
 }
 
-/// `coefficient = "K" ( "3" | "2" | "1" ) axis number [ exponent ]`
+/// `coefficient = "K", ( "3" | "2" | "1" ), axis, number, [ exponent ]`
 fn coefficient(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, (which, letter)) = (preceded(char('K'), one_of("321")), axis).parse(input)?;
     let (rest, (value, exponent)) = (number, opt(exponent)).parse(rest)?;
@@ -73,7 +73,7 @@ fn coefficient(input: &str) -> IResult<&str, Word<'_>> {
     Ok((rest, Word::Coefficient(power, letter, scaled(value, exponent.unwrap_or(0)))))
 }
 
-/// `exponent = { blank } "E" [ "+" | "-" ] digits`
+/// `exponent = { blank }, "E", [ "+" | "-" ], digits`
 fn exponent(input: &str) -> IResult<&str, i32> {
     let sign_and_digits = recognize(pair(opt(one_of("+-")), digit1));
     let (rest, digits) = preceded((space0, char('E')), sign_and_digits).parse(input)?;
@@ -108,12 +108,12 @@ pub(super) fn cut(units: i64, digits: u8, most: u8) -> Decimal {
     }
 }
 
-/// `feed = "F" number`
+/// `feed = "F", number`
 fn feed(input: &str) -> IResult<&str, Word<'_>> {
     preceded(char('F'), number).map(Word::Feed).parse(input)
 }
 
-/// `rapid = "F" { blank } "MAX"`
+/// `rapid = "F", { blank }, "MAX"`
 fn rapid(input: &str) -> IResult<&str, Word<'_>> {
     value(Word::Rapid, (char('F'), space0, tag("MAX"))).parse(input)
 }
@@ -123,12 +123,12 @@ fn compensation(input: &str) -> IResult<&str, Word<'_>> {
     value(Word::Uncompensated, tag("R0")).parse(input)
 }
 
-/// `other = sign { sign }`, any signs but blanks and the beginning of a comment
+/// What is no word of the grammar, up to a blank or a comment: it is refused by name.
 fn other(input: &str) -> IResult<&str, Word<'_>> {
     take_while1(|c: char| !c.is_whitespace() && c != ';').map(Word::Other).parse(input)
 }
 
-/// `continuation = { blank } "K" ( "3" | "2" | "1" ) axis …`: a line that belongs to the SPL before it
+/// Whether a line begins with a coefficient, as `K3X`, and so belongs to the SPL before it.
 pub(super) fn is_continuation(line: &str) -> bool {
     preceded((space0::<_, Error<&str>>, char('K'), one_of("321")), axis).parse(line).is_ok()
 }

@@ -374,7 +374,9 @@ impl Reader<'_> {
         }
     }
 
-    /// `G05 P2`, `G05.1 Q1`: how fast the control runs, not where.
+    /// How fast the control runs, not where:
+    /// `high_speed = "G", { "0" }, "5", { blank }, "P", ( "0" | "1" | "2" | "10000" )
+    ///     | "G", { "0" }, "5.1", { blank }, "Q", ( "0" | "1" )`, also with words between and beside them
     fn high_speed(&mut self, code: i64, block: &mut Block, range: Range<usize>) {
         let whole = |word: Option<Placed>| word.and_then(|(value, _)| value.units(0));
         let known = if code == 50 {
@@ -387,7 +389,8 @@ impl Reader<'_> {
         }
     }
 
-    /// `G43 H1`, after a tool call whose lines in the machine file end with it.
+    /// `length_offset = "G", { "0" }, "43", { blank }, "H", number`, after a tool call whose lines in the machine file end
+    /// with it; also with words between
     fn length_offset(&mut self, block: &mut Block, whole: Range<usize>) {
         let (offset, number) = (block.offset.take(), block.h.take());
         match (offset, number, self.offset_due) {

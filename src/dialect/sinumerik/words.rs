@@ -1,4 +1,5 @@
-//! The words of a Sinumerik block, as written. Each function carries its production's name.
+//! The words of a Sinumerik block, as written. Each function carries the name of its rule in `grammar/sinumerik.ebnf`, which
+//! has the words that mean something here; letters and names without a meaning are taken too, to be refused by name.
 
 use crate::decimal::{Decimal, read_decimal};
 use nom::branch::alt;
@@ -28,7 +29,7 @@ pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
     alt((address, polynomial, assignment, call, keyword)).parse(input)
 }
 
-/// `address = letter number`, where no `=` follows: `X1=10` is axis X1
+/// `address = ( axis_letter | "F" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1
 #[inline]
 fn address(input: &str) -> IResult<&str, Word<'_>> {
     let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
@@ -43,7 +44,8 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
     Ok((rest, Word::Address(&input[..1], value)))
 }
 
-/// `number = [sign] ( digits ["." [digits]] | "." digits ) ["EX" [sign] digits]`
+/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits ), [ exponent ]` with
+/// `exponent = "EX", [ "-" ], digits`
 #[inline]
 fn number(input: &str) -> IResult<&str, Decimal> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
@@ -74,7 +76,7 @@ fn scaled(mut value: Decimal, exponent: i32) -> Option<Decimal> {
     Some(value)
 }
 
-/// `name = letter { letter | digit | "_" }`
+/// A name: a letter or `_`, then letters, digits and `_`.
 fn name(input: &str) -> IResult<&str, &str> {
     recognize((
         take_while1(|c: char| c.is_ascii_alphabetic() || c == '_'),
@@ -83,32 +85,33 @@ fn name(input: &str) -> IResult<&str, &str> {
     .parse(input)
 }
 
-/// `list = "(" number { "," number } ")"`
+/// `list = "(", item, 4 * [ ",", item ], ")"` with `item = { blank }, number, { blank }`; or more of them
 fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
     let item = delimited(space0, number, space0);
     delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
 }
 
-/// `polynomial = "PO[" name "]" "=" list | name "=" "PO" list`
+/// `polynomial = "PO[", axis, "]", equals, list | axis, equals, "PO", list`, or another name
 fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
     let old = (delimited(tag("PO["), name, char(']')), preceded((space0, char('='), space0), list));
     let new = (terminated(name, (space0, char('='), space0, tag("PO"))), list);
     alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
 }
 
-/// `assignment = name "=" number`
+/// `assignment = ( axis | "F" | "PL" | "PW" ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
 fn assignment(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
     Ok((rest, Word::Address(name, value)))
 }
 
-/// `call = name "(" arguments ")"`
+/// `call = "SPLINEPATH(", { blank }, "1", { comma, axis }, { blank }, ")"
+///      | "FGROUP(", { blank }, [ linear_axis, { comma, linear_axis }, { blank } ], ")"`, or another name or arguments
 fn call(input: &str) -> IResult<&str, Word<'_>> {
     let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
     (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
 }
 
-/// `keyword = name`
+/// `keyword = motion | path_reference | end_condition | "COMPOF" | "SOFT" | "TRAFOOF"`, or another name
 fn keyword(input: &str) -> IResult<&str, Word<'_>> {
     name.map(Word::Keyword).parse(input)
 }

@@ -30,7 +30,7 @@ pub(super) struct NurbsRun {
 }
 
 impl Reader<'_> {
-    /// `first = "G06.2" ["P" order] K axes [R] [F]`, `point = K axes [R]`, `closing = K`
+    /// A block of a curve: the first as `G06.2 P4 K0. X0. Y0. R1. F200.`, then points as `K0. X10. Y0. R1.`, then K alone.
     pub(super) fn nurbs_block(&mut self, block: &Block, line: u32, span: Span) {
         let whole = span.start as usize..span.end as usize;
         if block.count == 0

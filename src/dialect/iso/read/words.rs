@@ -1,4 +1,5 @@
-//! The first layer: words as written.
+//! The first layer: words as written. Each function carries the name of its rule in `grammar/mazak.ebnf`, which has the
+//! words that mean something here; letters and names without a meaning are taken too, to be refused by name.
 
 use crate::decimal::{Decimal, read_decimal};
 use nom::branch::alt;
@@ -25,7 +26,8 @@ pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
     alt((address, remark, assignment)).parse(input)
 }
 
-/// `address = letter number`, where no `=` follows: `X1=10.` is axis X1
+/// `address = ( axis_letter | "F" | "K" | "P" | "R" ), number | "O", { "0" }, digit - "0", { digit } | code`, or another
+/// letter; no `=` follows, since `X1=10.` is axis X1
 #[inline]
 fn address(input: &str) -> IResult<&str, Word<'_>> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Alpha));
@@ -37,7 +39,7 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
     Ok((rest, Word::Address(letter, value)))
 }
 
-/// `number = [sign] ( digits ["." [digits]] | "." digits )`
+/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits )`
 #[inline]
 fn number(input: &str) -> IResult<&str, Decimal> {
     let failed = |_| nom::Err::Error(Error::new(input, ErrorKind::Digit));
@@ -45,19 +47,19 @@ fn number(input: &str) -> IResult<&str, Decimal> {
     Ok((&input[length..], value))
 }
 
-/// `remark = "(" { character - ")" } ")"`
+/// `remark = "(", { character - ")" }, ")"`
 fn remark(input: &str) -> IResult<&str, Word<'_>> {
     delimited(char('('), take_while(|c: char| c != ')'), char(')')).map(Word::Remark).parse(input)
 }
 
-/// `assignment = name "=" number`
+/// `assignment = axis, { blank }, "=", { blank }, number`, or another name
 fn assignment(input: &str) -> IResult<&str, Word<'_>> {
     (terminated(name, (space0, char('='), space0)), number)
         .map(|(name, value)| Word::Assignment(name, value))
         .parse(input)
 }
 
-/// `name = letter { letter | digit }`
+/// A name: a capital letter, then letters and digits.
 fn name(input: &str) -> IResult<&str, &str> {
     recognize((
         take_while1(|c: char| c.is_ascii_uppercase()),
