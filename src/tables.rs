@@ -41,7 +41,14 @@ impl Key {
 /// # Errors
 /// The text is not TOML, a key is unknown or stands twice, a value is of another kind.
 pub fn read<T: DeserializeOwned>(text: &str, source: SourceId, keys: &[Key]) -> Result<T, Diagnostics> {
-    let table = DeTable::parse(text).map_err(|error| from_toml(&error, source))?;
+    let table = DeTable::parse(text).map_err(|error| {
+        let diagnostic = from_toml(&error, source);
+        // TOML wants quotes round a key that is not plain ASCII.
+        match text.lines().find(|line| line.trim_start().starts_with('Δ')) {
+            Some(_) => diagnostic.hint("a Greek key stands in quotes: \"Δl\" = 0.2; `dl` is the same key"),
+            None => diagnostic,
+        }
+    })?;
     let mut diagnostics = Diagnostics::new();
     walk(table.get_ref(), keys, "", source, &mut diagnostics);
     // In the order of the text, not of the alphabet.
@@ -101,6 +108,12 @@ fn walk(table: &DeTable<'_>, keys: &[Key], within: &str, source: SourceId, diagn
             diagnostics.push(diagnostic);
             continue;
         };
+        if !known.inner.is_empty() && !value.get_ref().is_table() {
+            diagnostics.push(
+                Diagnostic::error("value-kind", format!("`{name}` is a table"))
+                    .at(Span::new(source, value.span()), "not a table"),
+            );
+        }
         if let (DeValue::Table(inner), false) = (value.get_ref(), known.inner.is_empty()) {
             let path = if within.is_empty() { name.to_owned() } else { format!("{within}.{name}") };
             if !known.each {

@@ -101,6 +101,9 @@ pub enum Order {
     Pass,
 }
 
+/// Below this the end diameter is no drawing's figure, mm.
+const LEAST_DIAMETER: f64 = 0.001;
+
 /// The greatest turn of A over a flute, degrees: what the narrowest control counts (Heidenhain: ±99 999.9999), less room
 /// for an index.
 const MAX_TURN: f64 = 99_000.0;
@@ -289,6 +292,10 @@ impl Reader {
         };
         match LogCurve::new(cutter, 0.0) {
             Ok(curve) => {
+                if cutter.d1 < LEAST_DIAMETER {
+                    let place = t.D1.as_ref().map_or(table.span(), Spanned::span);
+                    self.error("diameter-range", format!("D1 must be at least {LEAST_DIAMETER} mm"), place);
+                }
                 let turn = curve.angle(curve.end()).abs() * DEGREES;
                 if !(turn <= MAX_TURN) {
                     let message =

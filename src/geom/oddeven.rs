@@ -23,8 +23,8 @@
 use super::deviation::{Bound, log_chord};
 use super::logcurve::LogCurve;
 
-/// Above this many points a spec is a mistake: 5·10⁷ points are some gigabytes of program.
-pub const MAX_POINTS: f64 = 5.0e7;
+/// Above this many points a spec is a mistake: 2·10⁷ points are a gigabyte of program.
+pub const MAX_POINTS: f64 = 2.0e7;
 
 /// Why a step length cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

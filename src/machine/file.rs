@@ -309,11 +309,15 @@ impl Reader {
         {
             self.error("blocks-range", "bspline_min_blocks is at most 1000", blocks.span());
         }
-        for (word, letters) in [(&file.begin, "BAUTO, BNAT or BTAN"), (&file.end, "EAUTO, ENAT or ETAN")] {
+        // Empty where a control has none.
+        for (word, known) in
+            [(&file.begin, ["", "BAUTO", "BNAT", "BTAN"]), (&file.end, ["", "EAUTO", "ENAT", "ETAN"])]
+        {
             if let Some(word) = word
-                && !letters.split([',', ' ']).any(|known| known == word.get_ref())
+                && !known.contains(&word.get_ref().as_str())
             {
-                self.error("end-condition", format!("the end condition is {letters}"), word.span());
+                let message = format!("the end condition is {}", known[1..].join(" or "));
+                self.error("end-condition", message, word.span());
             }
         }
         Some(Spline {

@@ -211,15 +211,7 @@ fn goldens() -> Vec<Golden> {
 ///
 /// Mazak: the header cancels the tool's length (G49), and `G43 H` stands in the first section only. Whoever restarts
 /// at a later section, with the lines before the first, moves Z without the length.
-const KNOWN: &[(&str, Rule, &str)] = &[
-    ("conical-mill/mazak-g061.eia", Rule::Restart, "the tool length is not written again"),
-    ("conical-mill/mazak-g062.eia", Rule::Restart, "the tool length is not written again"),
-    ("conical-mill/mazak.eia", Rule::Restart, "the tool length is not written again"),
-    ("cylinder/mazak-g062.eia", Rule::Restart, "the tool length is not written again"),
-    ("cylinder/mazak.eia", Rule::Restart, "the tool length is not written again"),
-    ("reverse-taper/mazak.eia", Rule::Restart, "the tool length is not written again"),
-    ("straight-flute/mazak.eia", Rule::Restart, "the tool length is not written again"),
-];
+const KNOWN: &[(&str, Rule, &str)] = &[];
 
 #[test]
 fn golden_programs_break_no_rule() {

@@ -99,6 +99,10 @@ struct Reader<'m> {
     z: Option<usize>,
     /// The tool whose length offset is still to be called.
     offset_due: Option<u32>,
+    /// The tool whose length offset was called.
+    offset_tool: Option<u32>,
+    /// The tool whose length offset this section may call again, once.
+    offset_again: Option<u32>,
     /// The work offset in force, G54 to G59, in tenths.
     work_offset: Option<i64>,
     warned_left_out: bool,
@@ -117,6 +121,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         remarks: Vec::new(),
         z: Axis::new("Z").and_then(|z| machine.axes.index_of(z)),
         offset_due: None,
+        offset_tool: None,
+        offset_again: None,
         work_offset: None,
         warned_left_out: false,
     };
@@ -177,6 +183,7 @@ impl Reader<'_> {
         for (lines, due) in [(&frame.tool, offset.tool), (&frame.tool_spindle, offset.tool_spindle)] {
             if due && lines.first().is_some_and(|template| template.matched(body).is_some()) {
                 self.offset_due = self.assembler.tool();
+                self.offset_tool = None;
             }
         }
     }
@@ -222,11 +229,17 @@ impl Reader<'_> {
                 if self.run.is_some() {
                     self.remarks.push((text, span));
                 } else {
-                    self.assembler.step(Step::Comment(text), span);
+                    self.remark(text, span);
                 }
             }
             Some(_) | None => self.act(block, line, span),
         }
+    }
+
+    /// A remark starts a section.
+    fn remark(&mut self, text: String, span: Span) {
+        self.assembler.step(Step::Comment(text), span);
+        self.offset_again = self.offset_tool;
     }
 
     fn unreadable(&mut self, rest: &str, at: usize) {
@@ -343,6 +356,10 @@ impl Reader<'_> {
         if let Some((code, range)) = block.high_speed.take() {
             self.high_speed(code, &mut block, range);
         }
+        if block.offset.is_some() {
+            // It ends a spline, and the remarks that waited for that end start their sections.
+            self.flush();
+        }
         if block.offset.is_some() || block.h.is_some() || self.offset_due.is_some() {
             self.length_offset(&mut block, whole());
         }
@@ -393,7 +410,8 @@ impl Reader<'_> {
     /// with it; also with words between
     fn length_offset(&mut self, block: &mut Block, whole: Range<usize>) {
         let (offset, number) = (block.offset.take(), block.h.take());
-        match (offset, number, self.offset_due) {
+        // Due after a tool call; after that each section may call it again.
+        match (offset, number, self.offset_due.or(self.offset_again)) {
             (Some(_), Some((h, range)), Some(tool)) => {
                 if h.units(0) != Some(i64::from(tool)) {
                     self.error(
@@ -403,12 +421,15 @@ impl Reader<'_> {
                     );
                 }
                 self.offset_due = None;
+                self.offset_again = None;
+                self.offset_tool = Some(tool);
             }
             (Some(range), _, _) => {
-                self.error("tool-offset", "G43 H is read once after a tool call that asks for it", range);
+                self.error("tool-offset", "G43 H is read after a tool call that asks for it", range);
             }
             (None, Some((_, range)), _) => self.error("word-unknown", "H is read with G43 only", range),
-            (None, None, Some(tool)) => {
+            (None, None, _) => {
+                let Some(tool) = self.offset_due else { return };
                 let moves = match self.motion {
                     Motion::None => false,
                     Motion::Rapid => block.named().iter().any(|(axis, _)| Some(*axis) == self.z),
@@ -423,7 +444,6 @@ impl Reader<'_> {
                     );
                 }
             }
-            (None, None, None) => {}
         }
     }
 
@@ -483,7 +503,7 @@ impl Reader<'_> {
             }
         }
         for (text, span) in std::mem::take(&mut self.remarks) {
-            self.assembler.step(Step::Comment(text), span);
+            self.remark(text, span);
         }
     }
 }

@@ -21,6 +21,7 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
         z: Axis::new("Z").and_then(|z| machine.axes.index_of(z)),
         offset: &offset,
         offset_due: None,
+        offset_tool: None,
         through: false,
     };
     writer.program();
@@ -36,6 +37,8 @@ struct Writer<'a> {
     offset: &'a Offset<'a>,
     /// The tool whose length offset is still to be called.
     offset_due: Option<u32>,
+    /// The tool whose length offset each section calls.
+    offset_tool: Option<u32>,
     /// Whether the last motion is G06.1, which a comment does not end.
     through: bool,
 }
@@ -75,12 +78,14 @@ impl Writer<'_> {
             match &located.step {
                 Step::Tool(tool) => {
                     let called = if covered == 2 { self.offset.tool_spindle } else { self.offset.tool };
-                    self.offset_due = called.then_some(*tool);
+                    self.offset_tool = called.then_some(*tool);
+                    self.offset_due = self.offset_tool;
                 }
                 Step::Spindle(_) => {}
                 Step::Comment(text) => {
                     self.line(&format!("({text})"));
                     self.modal.forget();
+                    self.offset_due = self.offset_tool;
                 }
                 Step::Rapid(targets) => self.rapid(targets),
                 Step::Cut(cut) => {
