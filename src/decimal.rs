@@ -168,8 +168,7 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
         out.push(b'+');
     }
     let magnitude = units.unsigned_abs();
-    let scale = power_of_ten(digits) as u64;
-    let (whole, mut fraction) = (magnitude / scale, magnitude % scale);
+    let (whole, mut fraction) = split(magnitude, digits);
     let mut buffer = itoa::Buffer::new();
     out.extend_from_slice(buffer.format(whole).as_bytes());
     if fraction == 0 {
@@ -194,6 +193,20 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
         }
     }
     out.truncate(end);
+}
+
+/// The whole part and the fraction of `magnitude` / 10^`digits`. A division by a constant is a multiplication, and
+/// controls have four decimals or six.
+#[inline]
+fn split(magnitude: u64, digits: u8) -> (u64, u64) {
+    match digits {
+        4 => (magnitude / 10_000, magnitude % 10_000),
+        6 => (magnitude / 1_000_000, magnitude % 1_000_000),
+        _ => {
+            let scale = power_of_ten(digits) as u64;
+            (magnitude / scale, magnitude % scale)
+        }
+    }
 }
 
 impl Decimal {

@@ -53,7 +53,7 @@ impl<'t> Iterator for Lines<'t> {
         }
         let rest = &self.text[self.at..];
         let length = rest.find('\n').unwrap_or(rest.len());
-        let line = Line { number: self.number + 1, start: self.at, text: rest[..length].trim_end() };
+        let line = Line { number: self.number + 1, start: self.at, text: rest[..length].trim_ascii_end() };
         self.number += 1;
         self.at += length + 1;
         Some(line)

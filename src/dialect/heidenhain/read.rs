@@ -115,7 +115,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
     while let Some(line) = reader.lines.next() {
-        let mut body = line.text.trim_start();
+        let mut body = line.text.trim_ascii_start();
         if body.is_empty() {
             continue;
         }
@@ -124,7 +124,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         } else {
             let number = block_number(body);
             if let Some((_, digits)) = number {
-                body = body[digits..].trim_start();
+                body = body[digits..].trim_ascii_start();
             }
             numbering.meet(number.map(|(number, _)| number), line.range());
         }
@@ -212,13 +212,13 @@ impl<'t> Reader<'t, '_> {
             Some(code) => (code, true),
             None => (text, false),
         };
-        let mut rest = code.trim_start();
+        let mut rest = code.trim_ascii_start();
         while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
             match word(rest) {
                 Ok((after, word)) => {
                     self.word(&word, at..at + (rest.len() - after.len()), block);
-                    rest = after.trim_start();
+                    rest = after.trim_ascii_start();
                 }
                 // `other` takes whatever is no blank and no comment.
                 Err(_) => break,

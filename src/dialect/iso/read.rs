@@ -127,13 +127,13 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         warned_left_out: false,
     };
     for line in Lines::new(text) {
-        let mut body = line.text.trim_start();
+        let mut body = line.text.trim_ascii_start();
         if body.is_empty() {
             continue;
         }
         let number = body.strip_prefix('N').and_then(block_number);
         if let Some((_, digits)) = number {
-            body = body[1 + digits..].trim_start();
+            body = body[1 + digits..].trim_ascii_start();
         }
         if number.is_some() || is_block(body) {
             numbering.meet(number.map(|(number, _)| number), line.range());
@@ -221,7 +221,7 @@ impl Reader<'_> {
                     }
                 }
             }
-            rest = after.trim_start();
+            rest = after.trim_ascii_start();
         }
         match remark {
             Some(text) if words == 0 => {

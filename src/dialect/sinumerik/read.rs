@@ -89,7 +89,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         run: None,
     };
     for line in Lines::new(text) {
-        let indent = line.text.len() - line.text.trim_start().len();
+        let indent = line.text.len() - line.text.trim_ascii_start().len();
         let mut body = &line.text[indent..];
         let mut start = line.start + indent;
         if body.is_empty() {
@@ -98,7 +98,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         if !body.starts_with(';') {
             let number = body.strip_prefix('N').and_then(block_number);
             if let Some((_, digits)) = number {
-                let rest = body[1 + digits..].trim_start();
+                let rest = body[1 + digits..].trim_ascii_start();
                 start += body.len() - rest.len();
                 body = rest;
             }
@@ -155,14 +155,14 @@ impl Reader<'_> {
             feed: None,
             starts_spline: false,
         };
-        let mut rest = code.trim_start();
+        let mut rest = code.trim_ascii_start();
         while !rest.is_empty() {
             let at = start + (code.len() - rest.len());
             match word(rest) {
                 Ok((after, word)) => {
                     let range = at..at + (rest.len() - after.len());
                     self.word(word, range, &mut block);
-                    rest = after.trim_start();
+                    rest = after.trim_ascii_start();
                 }
                 Err(_) => {
                     let length = rest.find([' ', '\t']).unwrap_or(rest.len());
