@@ -39,7 +39,7 @@ fn every_cutter_in_every_motion() {
 
 proptest! {
     // Each case compiles for every motion of every machine.
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
     fn any_cutter_compiles_and_verifies(

@@ -255,11 +255,14 @@ impl LogCurve {
             .sum()
     }
 
-    /// The greatest surface distance that 1 mm of X makes anywhere on the curve.
-    pub fn speed_bound(&self) -> f64 {
-        // dA/dX is monotone; R is at most the greatest radius.
-        let turn = self.max_radius() * self.slope(0.0).abs().max(self.slope(self.end()).abs());
-        (self.length_per_x() * self.length_per_x() + turn * turn).sqrt()
+    /// Upper bounds of how far the curve runs between two X, mm at the surface and radians. dA/dX and R are monotone, so
+    /// each is greatest at one of the two.
+    pub fn run_bound(&self, from: f64, to: f64) -> (f64, f64) {
+        let slope = self.slope(from).abs().max(self.slope(to).abs());
+        let turn = slope * self.metric_radius(from).max(self.metric_radius(to));
+        let speed = (self.length_per_x() * self.length_per_x() + turn * turn).sqrt();
+        let run = (to - from).abs();
+        (run * speed, run * slope)
     }
 
     /// Points 0 = x₀ < … < xₙ = end that share a fit of order `order` out evenly.

@@ -286,12 +286,15 @@ fn surface_distance(curve: &LogCurve, read: &Position, x: f64, a: f64) -> Bound 
     end.segment(&end)
 }
 
-/// Adds what a late start or an early end costs.
+/// Adds what a late start or an early end costs: how far the curve runs between where it was asked to end and where the
+/// path does.
 fn ends(curve: &LogCurve, start: f64, end: f64, found: &mut Found) {
-    let missed = start.abs().max((end - curve.end()).abs());
-    // The speed is taken on the curve; a path that ends beyond it by a rounding meets it faster by far less than 1 %.
-    found.deviation.mm += 1.01 * missed * curve.speed_bound();
-    found.deviation.rad += 1.01 * missed * curve.slope(0.0).abs().max(curve.slope(curve.end()).abs());
+    let (mm, rad) = [(start, 0.0), (end, curve.end())]
+        .map(|(read, asked)| curve.run_bound(read, asked))
+        .into_iter()
+        .fold((0.0, 0.0), |most: (f64, f64), run| (most.0.max(run.0), most.1.max(run.1)));
+    found.deviation.mm += mm;
+    found.deviation.rad += rad;
 }
 
 /// How many blocks a curve of so many pieces takes.
