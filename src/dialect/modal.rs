@@ -2,7 +2,7 @@
 //!
 //! All of it is forgotten at the start of a section, so that a program can be restarted there.
 
-use crate::decimal::Decimal;
+use crate::decimal::{Decimal, Spelling, write_units};
 use crate::ir::{Step, Units};
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -14,6 +14,9 @@ pub struct Modal<'m> {
     pub out: Vec<u8>,
     /// The machine.
     pub machine: &'m Machine,
+    /// How numbers are spelled.
+    pub spelling: Spelling,
+    digits: [u8; MAX_AXES],
     /// Where each axis is known to be, in units of its last decimal.
     pub position: [Option<i64>; MAX_AXES],
     /// The motion word in force.
@@ -29,6 +32,11 @@ impl<'m> Modal<'m> {
         Modal {
             out: Vec::with_capacity(size),
             machine,
+            spelling: Spelling {
+                point_always: machine.text.point_always,
+                sign_always: machine.text.sign_always,
+            },
+            digits: machine.axis_digits(),
             position: [None; MAX_AXES],
             motion: None,
             feed: None,
@@ -48,14 +56,15 @@ impl<'m> Modal<'m> {
         self.out.extend_from_slice(text.as_bytes());
     }
 
-    /// The number of the next block, as text; empty where the machine has none.
-    pub fn take_number(&mut self) -> Option<u32> {
-        if self.machine.text.number_step == 0 {
-            return None;
+    /// Starts a block with its number, where the machine numbers its blocks.
+    pub fn begin(&mut self, prefix: &str) {
+        let step = self.machine.text.number_step;
+        if step != 0 {
+            self.text(prefix);
+            self.text(itoa::Buffer::new().format(self.number));
+            self.out.push(b' ');
+            self.number = self.number.wrapping_add(step);
         }
-        let number = self.number;
-        self.number = self.number.wrapping_add(self.machine.text.number_step);
-        Some(number)
     }
 
     /// Ends a block.
@@ -66,9 +75,68 @@ impl<'m> Modal<'m> {
         self.out.push(b'\n');
     }
 
-    /// Whether a point at `point` moves axis `i`.
-    pub fn moves(&self, i: usize, point: &Units) -> bool {
-        self.position[i] != Some(point[i])
+    /// The motion word, where it is not in force.
+    pub fn motion(&mut self, word: &'static str) {
+        if self.motion != Some(word) {
+            self.text(word);
+            self.out.push(b' ');
+            self.motion = Some(word);
+        }
+    }
+
+    /// F, where another is in force. A number that is never negative has no sign.
+    pub fn feed(&mut self, feed: Option<Decimal>) {
+        if let Some(value) = feed
+            && self.feed != feed
+        {
+            self.out.push(b'F');
+            value.write(&mut self.out, Spelling { sign_always: false, ..self.spelling });
+            self.out.push(b' ');
+            self.feed = feed;
+        }
+    }
+
+    /// An axis word. `=` separates a name of more than one letter from its value.
+    #[inline]
+    pub fn axis(&mut self, i: usize, units: i64) {
+        let name = self.machine.axes.name(i);
+        self.text(name.as_str());
+        if 1 < name.as_str().len() {
+            self.out.push(b'=');
+        }
+        write_units(&mut self.out, units, self.digits[i], self.spelling);
+        self.out.push(b' ');
+    }
+
+    /// The words of the axes named, moved or not.
+    pub fn axes(&mut self, named: &[usize], point: &Units) {
+        for i in named {
+            self.axis(*i, point[*i]);
+        }
+    }
+
+    /// The words of the axes that a straight move moves; the first where it moves none, since a block needs one.
+    #[inline]
+    pub fn moved_axes(&mut self, point: &Units, count: usize) {
+        let mut moved = false;
+        for i in 0..count {
+            if self.position[i] != Some(point[i]) {
+                self.axis(i, point[i]);
+                moved = true;
+            }
+        }
+        if !moved {
+            self.axis(0, point[0]);
+        }
+    }
+
+    /// The words of a rapid.
+    pub fn targets(&mut self, targets: &[(usize, Decimal)]) {
+        for (axis, to) in targets {
+            let units = to.units(self.digits[*axis]).unwrap_or_default();
+            self.axis(*axis, units);
+            self.position[*axis] = Some(units);
+        }
     }
 
     /// Takes a point as reached.

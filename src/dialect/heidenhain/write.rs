@@ -1,7 +1,7 @@
 //! Spells a legal program in Klartext. Every block has a number, comments too; a block that goes on in the next line
 //! ends with `~`, and the lines that continue it have none.
 
-use crate::decimal::{Decimal, Spelling, write_units};
+use crate::decimal::{Decimal, Spelling};
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
 use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written, WrittenPoints, WrittenPolynomial};
@@ -18,9 +18,7 @@ const FEWEST_AXES: usize = 2;
 pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     let decimals = legal.decimals();
     let size = expected_size(decimals);
-    let text = &machine.text;
-    let spelling = Spelling { point_always: text.point_always, sign_always: text.sign_always };
-    let mut writer = Writer { modal: Modal::new(machine, size), decimals, spelling, goes_on: false };
+    let mut writer = Writer { modal: Modal::new(machine, size), decimals, goes_on: false };
     writer.program();
     String::from_utf8(writer.modal.out).unwrap_or_default()
 }
@@ -28,23 +26,15 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
 struct Writer<'a> {
     modal: Modal<'a>,
     decimals: &'a Decimals,
-    spelling: Spelling,
     /// Whether the last line ended with `~`.
     goes_on: bool,
 }
 
 impl Writer<'_> {
-    fn begin(&mut self) {
-        if let Some(number) = self.modal.take_number() {
-            self.modal.text(itoa::Buffer::new().format(number));
-            self.modal.out.push(b' ');
-        }
-    }
-
     /// A line of fixed words.
     fn block(&mut self, text: &str) {
         if !self.goes_on {
-            self.begin();
+            self.modal.begin("");
         }
         self.modal.text(text);
         self.modal.end();
@@ -69,7 +59,7 @@ impl Writer<'_> {
             match &located.step {
                 Step::Tool(_) | Step::Spindle(_) => {}
                 Step::Comment(text) => {
-                    self.begin();
+                    self.modal.begin("");
                     self.modal.text("; ");
                     self.modal.text(text);
                     self.modal.end();
@@ -89,53 +79,20 @@ impl Writer<'_> {
         }
     }
 
-    fn feed(&mut self, feed: Option<Decimal>) {
-        if let Some(value) = feed
-            && self.modal.feed != feed
-        {
-            // F, as a number that is never negative, has no sign.
-            let spelling = Spelling { sign_always: false, ..self.spelling };
-            self.modal.out.push(b'F');
-            value.write(&mut self.modal.out, spelling);
-            self.modal.out.push(b' ');
-            self.modal.feed = feed;
-        }
-    }
-
-    #[inline]
-    fn axis(&mut self, i: usize, units: i64) {
-        self.modal.text(self.modal.machine.axes.name(i).as_str());
-        write_units(&mut self.modal.out, units, self.decimals.digits[i], self.spelling);
-        self.modal.out.push(b' ');
-    }
-
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
-        self.begin();
+        self.modal.begin("");
         self.modal.text("L ");
-        for (axis, to) in targets {
-            let units = to.units(self.decimals.digits[*axis]).unwrap_or_default();
-            self.axis(*axis, units);
-            self.modal.position[*axis] = Some(units);
-        }
+        self.modal.targets(targets);
         self.modal.text("R0 FMAX");
         self.modal.end();
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         for point in points.points() {
-            self.begin();
+            self.modal.begin("");
             self.modal.text("L ");
-            let mut moved = false;
-            for i in 0..points.stride {
-                if self.modal.moves(i, &point) {
-                    self.axis(i, point[i]);
-                    moved = true;
-                }
-            }
-            if !moved {
-                self.axis(0, point[0]);
-            }
-            self.feed(feed);
+            self.modal.moved_axes(&point, points.stride);
+            self.modal.feed(feed);
             self.modal.reached(&point);
             self.modal.end();
         }
@@ -151,10 +108,10 @@ impl Writer<'_> {
 
     fn spline(&mut self, block: &PolynomialBlock, start: &Units, feed: Option<Decimal>) {
         let named = self.named(block, start);
-        self.begin();
+        self.modal.begin("");
         self.modal.text("SPL ");
         for &i in &named {
-            self.axis(i, block.end[i]);
+            self.modal.axis(i, block.end[i]);
         }
         self.modal.text("~\n");
         for (n, &i) in named.iter().enumerate() {
@@ -165,14 +122,14 @@ impl Writer<'_> {
             for (power, k) in [(b'3', k[0]), (b'2', k[1]), (b'1', k[2])] {
                 self.modal.out.extend_from_slice(&[b' ', b'K', power]);
                 self.modal.text(name.as_str());
-                write_coefficient(&mut self.modal.out, k, self.spelling);
+                write_coefficient(&mut self.modal.out, k, self.modal.spelling);
             }
             self.modal.out.push(b' ');
             if n + 1 < named.len() {
                 self.modal.text("~\n");
             }
         }
-        self.feed(feed);
+        self.modal.feed(feed);
         self.modal.reached(&block.end);
         self.modal.end();
     }
@@ -182,7 +139,9 @@ impl Writer<'_> {
         let axes = self.modal.machine.axes.count();
         let moves = |i: &usize| {
             let (i, k) = (*i, &block.coefficients[*i]);
-            self.modal.moves(i, &block.end) || block.end[i] != start[i] || k.iter().any(|a| !a.is_zero())
+            self.modal.position[i] != Some(block.end[i])
+                || block.end[i] != start[i]
+                || k.iter().any(|a| !a.is_zero())
         };
         let mut named: Vec<usize> = (0..axes).filter(moves).collect();
         for i in 0..axes {

@@ -1,10 +1,10 @@
 //! Spells a legal program for ISO controls.
 
 use super::{Offset, is_block};
-use crate::decimal::{Decimal, Spelling, write_units};
+use crate::decimal::{Decimal, write_units};
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
-use crate::ir::{Decimals, Step, Units, Written, WrittenNurbs, WrittenPoints};
+use crate::ir::{Decimals, Step, Written, WrittenNurbs, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
 use crate::units::Axis;
@@ -13,11 +13,9 @@ use crate::units::Axis;
 pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     let decimals = legal.decimals();
     let offset = Offset::new(machine);
-    let text = &machine.text;
     let mut writer = Writer {
         modal: Modal::new(&offset.machine, expected_size(decimals)),
         decimals,
-        spelling: Spelling { point_always: text.point_always, sign_always: text.sign_always },
         z: Axis::new("Z").and_then(|z| machine.axes.index_of(z)),
         offset: &offset,
         offset_due: None,
@@ -31,7 +29,6 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
 struct Writer<'a> {
     modal: Modal<'a>,
     decimals: &'a Decimals,
-    spelling: Spelling,
     /// Which axis is Z.
     z: Option<usize>,
     offset: &'a Offset<'a>,
@@ -44,18 +41,10 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn begin(&mut self) {
-        if let Some(number) = self.modal.take_number() {
-            self.modal.out.push(b'N');
-            self.modal.text(itoa::Buffer::new().format(number));
-            self.modal.out.push(b' ');
-        }
-    }
-
     /// A line of fixed words.
     fn line(&mut self, text: &str) {
         if is_block(text) {
-            self.begin();
+            self.modal.begin("N");
         }
         self.modal.text(text);
         self.modal.end();
@@ -115,75 +104,30 @@ impl Writer<'_> {
         }
     }
 
-    /// The motion word, where it is not in force.
-    fn motion(&mut self, word: &'static str) {
-        if self.modal.motion != Some(word) {
-            self.modal.text(word);
-            self.modal.out.push(b' ');
-            self.modal.motion = Some(word);
-        }
-    }
-
-    fn feed(&mut self, feed: Option<Decimal>) {
-        if let Some(value) = feed
-            && self.modal.feed != feed
-        {
-            self.modal.out.push(b'F');
-            value.write(&mut self.modal.out, self.spelling);
-            self.modal.out.push(b' ');
-            self.modal.feed = feed;
-        }
-    }
-
-    #[inline]
-    fn axis(&mut self, i: usize, units: i64) {
-        let name = self.modal.machine.axes.name(i);
-        self.modal.text(name.as_str());
-        // `=` separates a name that ends in a digit from its value.
-        if 1 < name.as_str().len() {
-            self.modal.out.push(b'=');
-        }
-        write_units(&mut self.modal.out, units, self.decimals.digits[i], self.spelling);
-        self.modal.out.push(b' ');
-    }
-
     fn knot(&mut self, nurbs: &WrittenNurbs, units: i64) {
         self.modal.out.push(b'K');
-        write_units(&mut self.modal.out, units, nurbs.knot_digits, self.spelling);
+        write_units(&mut self.modal.out, units, nurbs.knot_digits, self.modal.spelling);
         self.modal.out.push(b' ');
     }
 
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
-        self.begin();
-        self.motion("G0");
+        self.modal.begin("N");
+        self.modal.motion("G0");
         if targets.iter().any(|(axis, _)| Some(*axis) == self.z)
             && let Some(tool) = self.offset_due.take()
         {
             self.modal.text(&format!("G43 H{tool} "));
         }
-        for (axis, to) in targets {
-            let units = to.units(self.decimals.digits[*axis]).unwrap_or_default();
-            self.axis(*axis, units);
-            self.modal.position[*axis] = Some(units);
-        }
+        self.modal.targets(targets);
         self.modal.end();
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         for point in points.points() {
-            self.begin();
-            self.motion("G1");
-            let mut moved = false;
-            for i in 0..points.stride {
-                if self.modal.moves(i, &point) {
-                    self.axis(i, point[i]);
-                    moved = true;
-                }
-            }
-            if !moved {
-                self.axis(0, point[0]);
-            }
-            self.feed(feed);
+            self.modal.begin("N");
+            self.modal.motion("G1");
+            self.modal.moved_axes(&point, points.stride);
+            self.modal.feed(feed);
             self.modal.reached(&point);
             self.modal.end();
         }
@@ -195,37 +139,31 @@ impl Writer<'_> {
         if moved.is_empty() { vec![0] } else { moved }
     }
 
-    fn point(&mut self, point: &Units, named: &[usize]) {
-        for i in named {
-            self.axis(*i, point[*i]);
-        }
-    }
-
     fn nurbs(&mut self, nurbs: &WrittenNurbs, curve: &Written, feed: Option<Decimal>) {
         let named = Self::named(curve);
         // Each curve has its own word, though the one before leaves it in force.
         self.modal.motion = None;
         for (i, (point, knot)) in nurbs.points.iter().zip(&nurbs.knots).enumerate() {
-            self.begin();
+            self.modal.begin("N");
             if i == 0 {
-                self.motion("G06.2");
+                self.modal.motion("G06.2");
                 self.modal.out.push(b'P');
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree + 1));
                 self.modal.out.push(b' ');
             }
             self.knot(nurbs, *knot);
-            self.point(point, &named);
+            self.modal.axes(&named, point);
             if let Some(weight) = nurbs.weights.as_ref().and_then(|weights| weights.get(i)) {
                 self.modal.out.push(b'R');
-                weight.write(&mut self.modal.out, self.spelling);
+                weight.write(&mut self.modal.out, self.modal.spelling);
                 self.modal.out.push(b' ');
             }
-            self.feed(feed);
+            self.modal.feed(feed);
             self.modal.reached(point);
             self.modal.end();
         }
         for knot in nurbs.knots.iter().skip(nurbs.points.len()) {
-            self.begin();
+            self.modal.begin("N");
             self.knot(nurbs, *knot);
             self.modal.end();
         }
@@ -239,10 +177,10 @@ impl Writer<'_> {
             self.modal.motion = None;
         }
         for point in points.points() {
-            self.begin();
-            self.motion("G06.1");
-            self.point(&point, &named);
-            self.feed(feed);
+            self.modal.begin("N");
+            self.modal.motion("G06.1");
+            self.modal.axes(&named, &point);
+            self.modal.feed(feed);
             self.modal.reached(&point);
             self.modal.end();
         }

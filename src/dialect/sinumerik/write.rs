@@ -2,9 +2,7 @@
 
 use crate::decimal::{Decimal, Spelling, write_units};
 use crate::dialect::modal::Modal;
-use crate::ir::{
-    Decimals, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
-};
+use crate::ir::{Decimals, Step, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
 use crate::units::Kind;
@@ -29,23 +27,10 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn spelling(&self) -> Spelling {
-        let text = &self.modal.machine.text;
-        Spelling { point_always: text.point_always, sign_always: text.sign_always }
-    }
-
-    fn begin(&mut self) {
-        if let Some(number) = self.modal.take_number() {
-            self.modal.out.push(b'N');
-            self.modal.text(itoa::Buffer::new().format(number));
-            self.modal.out.push(b' ');
-        }
-    }
-
     /// A block of fixed words; a comment has no number.
     fn block(&mut self, text: &str) {
         if !text.starts_with(';') {
-            self.begin();
+            self.modal.begin("N");
         }
         self.modal.text(text);
         self.modal.end();
@@ -90,66 +75,19 @@ impl Writer<'_> {
         }
     }
 
-    /// The motion word, where it is not in force.
-    fn motion(&mut self, word: &'static str) {
-        if self.modal.motion != Some(word) {
-            self.modal.text(word);
-            self.modal.out.push(b' ');
-            self.modal.motion = Some(word);
-        }
-    }
-
-    fn feed(&mut self, feed: Option<Decimal>) {
-        if let Some(value) = feed
-            && self.modal.feed != feed
-        {
-            let spelling = self.spelling();
-            self.modal.out.push(b'F');
-            value.write(&mut self.modal.out, spelling);
-            self.modal.out.push(b' ');
-            self.modal.feed = feed;
-        }
-    }
-
-    #[inline]
-    fn axis(&mut self, i: usize, units: i64) {
-        let name = self.modal.machine.axes.name(i);
-        self.modal.text(name.as_str());
-        // `=` is required after a name of more than one letter.
-        if 1 < name.as_str().len() {
-            self.modal.out.push(b'=');
-        }
-        let spelling = self.spelling();
-        write_units(&mut self.modal.out, units, self.decimals.digits[i], spelling);
-        self.modal.out.push(b' ');
-    }
-
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
-        self.begin();
-        self.motion("G0");
-        for (axis, to) in targets {
-            let units = to.units(self.decimals.digits[*axis]).unwrap_or_default();
-            self.axis(*axis, units);
-            self.modal.position[*axis] = Some(units);
-        }
+        self.modal.begin("N");
+        self.modal.motion("G0");
+        self.modal.targets(targets);
         self.modal.end();
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         for point in points.points() {
-            self.begin();
-            self.motion("G1");
-            let mut moved = false;
-            for i in 0..points.stride {
-                if self.modal.moves(i, &point) {
-                    self.axis(i, point[i]);
-                    moved = true;
-                }
-            }
-            if !moved {
-                self.axis(0, point[0]);
-            }
-            self.feed(feed);
+            self.modal.begin("N");
+            self.modal.motion("G1");
+            self.modal.moved_axes(&point, points.stride);
+            self.modal.feed(feed);
             self.modal.reached(&point);
             self.modal.end();
         }
@@ -173,32 +111,25 @@ impl Writer<'_> {
         }
     }
 
-    /// Words for a control point: every axis that the curve moves, on every block.
-    fn point(&mut self, point: &Units, moved: &[usize]) {
-        for i in moved {
-            self.axis(*i, point[*i]);
-        }
-    }
-
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, curve: &Written, feed: Option<Decimal>) {
         self.path_reference(curve, false);
         let moved = moving(curve);
         for block in &polynomial.blocks {
-            self.begin();
-            self.motion("POLY");
+            self.modal.begin("N");
+            self.modal.motion("POLY");
             for &i in &moved {
                 let coefficients = &block.coefficients[i];
                 let count =
                     coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
                 if count == 0 {
-                    self.axis(i, block.end[i]);
+                    self.modal.axis(i, block.end[i]);
                     continue;
                 }
                 let name = self.modal.machine.axes.name(i);
                 self.modal.text("PO[");
                 self.modal.text(name.as_str());
                 self.modal.text("]=(");
-                let spelling = self.spelling();
+                let spelling = self.modal.spelling;
                 write_units(&mut self.modal.out, block.end[i], self.decimals.digits[i], spelling);
                 for a in &coefficients[..count] {
                     self.modal.out.push(b',');
@@ -209,7 +140,7 @@ impl Writer<'_> {
             self.modal.text("PL=");
             block.pl.write(&mut self.modal.out, Spelling::PLAIN);
             self.modal.out.push(b' ');
-            self.feed(feed);
+            self.modal.feed(feed);
             self.modal.reached(&block.end);
             self.modal.end();
         }
@@ -221,14 +152,14 @@ impl Writer<'_> {
         // A spline starts anew: two in a row would else be one.
         self.modal.motion = None;
         for (j, point) in nurbs.points.iter().enumerate().skip(1) {
-            self.begin();
+            self.modal.begin("N");
             if j == 1 {
-                self.motion("BSPLINE");
+                self.modal.motion("BSPLINE");
                 self.modal.text("SD=");
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree));
                 self.modal.out.push(b' ');
             }
-            self.point(point, &moved);
+            self.modal.axes(&moved, point);
             self.modal.text("PL=");
             let distance = nurbs.knots[j + 2] - nurbs.knots[j + 1];
             write_units(&mut self.modal.out, distance, nurbs.knot_digits, Spelling::PLAIN);
@@ -238,7 +169,7 @@ impl Writer<'_> {
                 weights[j].write(&mut self.modal.out, Spelling::PLAIN);
                 self.modal.out.push(b' ');
             }
-            self.feed(feed);
+            self.modal.feed(feed);
             self.modal.reached(point);
             self.modal.end();
         }
@@ -253,15 +184,15 @@ impl Writer<'_> {
         };
         self.modal.motion = None;
         for (j, point) in points.points().enumerate() {
-            self.begin();
+            self.modal.begin("N");
             if j == 0 {
-                self.motion(word);
+                self.modal.motion(word);
                 let spline = &self.modal.machine.spline;
                 let ends = format!("{} {} ", spline.begin, spline.end);
                 self.modal.text(&ends);
             }
-            self.point(&point, &moved);
-            self.feed(feed);
+            self.modal.axes(&moved, &point);
+            self.modal.feed(feed);
             self.modal.reached(&point);
             self.modal.end();
         }
