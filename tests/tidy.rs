@@ -53,6 +53,26 @@ fn every_dialect_has_a_page_and_a_machine() {
     }
 }
 
+/// A key that no page speaks of is a key that nobody finds.
+#[test]
+fn every_key_stands_in_a_document() {
+    let mut pages: String = files(&folder("docs"), "md").iter().map(|path| source(path)).collect();
+    pages.push_str(&source(&folder("README.md")));
+    pages.extend(files(&folder("grammar"), "ebnf").iter().map(|path| source(path)));
+    let mut keys: Vec<&splinepost::tables::Key> =
+        [splinepost::front::cutter::KEYS, splinepost::machine::KEYS].into_iter().flatten().collect();
+    while let Some(key) = keys.pop() {
+        let named = [
+            format!("`{}", key.name),
+            format!("\"{}\"", key.name),
+            format!("[{}", key.name),
+            format!("{}\"", key.name),
+        ];
+        assert!(named.iter().any(|form| pages.contains(form.as_str())), "no page speaks of {}", key.name);
+        keys.extend(key.inner);
+    }
+}
+
 #[test]
 fn storeys_import_only_what_they_may() {
     let forbidden: &[(&str, &[&str])] = &[
