@@ -6,6 +6,26 @@ use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::{Options, compile, front};
 
+/// What numbers should not be, and words where none belong.
+const EXTREMES: [&str; 16] = [
+    "99999999999999999",
+    "999999999",
+    "00000000000000000000001",
+    "0.000000000000000001",
+    "-",
+    "1e308",
+    "nan",
+    "inf",
+    "EX-30",
+    "E+255",
+    "E-255",
+    "PL=",
+    "K3X",
+    "G06.2",
+    "[[",
+    "\u{fffd}",
+];
+
 /// A text with some bytes changed, dropped or doubled.
 fn mutated(text: &str, edits: &[(usize, u8, u8)]) -> String {
     let mut bytes = text.as_bytes().to_vec();
@@ -14,7 +34,11 @@ fn mutated(text: &str, edits: &[(usize, u8, u8)]) -> String {
             break;
         }
         let at = place % bytes.len();
-        match kind % 5 {
+        match kind % 6 {
+            5 => {
+                let extreme = EXTREMES[usize::from(*byte) % EXTREMES.len()];
+                bytes.splice(at..at, extreme.bytes());
+            }
             0 => bytes[at] = *byte,
             1 => {
                 bytes.remove(at);
