@@ -123,7 +123,8 @@ pub fn compile(
     length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
     let mut warnings = Diagnostics::new();
-    let motion = match options.motion.or(machine.motion) {
+    let asked = options.motion.or(machine.motion);
+    let motion = match asked {
         Some(motion) => motion,
         None => {
             let chosen = pass::choose::choose(&intent, &machine, tolerance)?;
@@ -131,7 +132,7 @@ pub fn compile(
             chosen.value
         }
     };
-    let intent = pass::settle::settle(&intent, motion.form, tolerance)?;
+    let intent = pass::settle::settle(&intent, motion.form, asked.is_some(), tolerance)?;
     warnings.extend(overrun_without_steps(&intent));
     // Rounding costs something. What is left of the tolerance is for the fit; where the whole turns out too dear,
     // the fit is made finer. Lines are never refined: their points are asked for as they are.
@@ -229,8 +230,20 @@ pub fn verify_program(
     let tolerance = tolerance(&intent, &machine, options)?;
     let text = sources.get(program).map_or("", |source| source.text.as_str());
     let reading = (machine.dialect.read)(text, program, &machine)?;
-    let intent = pass::settle::settle(&intent, form_of(&reading.value.decimals), tolerance)?;
-    let report = verify::verify(&intent, &reading.value, text, program, &machine, tolerance)?;
+    // Whether lines were asked for or chosen cannot be seen, and matters for straight paths only: one line or many.
+    let form = form_of(&reading.value.decimals);
+    let settle = |asked| pass::settle::settle(&intent, form, asked, tolerance);
+    let check = |intent: &Intent| verify::verify(intent, &reading.value, text, program, &machine, tolerance);
+    let chosen = settle(false)?;
+    let (intent, report) = match check(&chosen) {
+        Ok(report) => (chosen, report),
+        Err(refused) => {
+            let asked = settle(true)?;
+            let report = if asked == chosen { Err(refused.clone()) } else { check(&asked) };
+            // Of two refusals the first is told: the shorter program is the usual one.
+            (asked, report.map_err(|_| refused)?)
+        }
+    };
     let legal = pass::check::check(reading.value.decimals, &machine)?;
     verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
     let mut warnings = reading.warnings;

@@ -11,12 +11,12 @@ pub const MAX_STEP: f64 = 0.2;
 
 /// The intent with method and Δl of every logarithmic curve decided for an output of `form`.
 ///
-/// `auto` means odd-even steps where lines follow a curve, and the curve itself for splines and for paths that are
-/// straight anyway: one line is the whole of it.
+/// `auto` means odd-even steps for lines and the curve itself for splines. Where nobody `asked` for lines and the path is
+/// straight, it means the curve itself too: one line is the whole of it.
 ///
 /// # Errors
 /// The Δl that would hold the tolerance makes too many points.
-pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Diagnostics> {
+pub fn settle(intent: &Intent, form: Form, asked: bool, tolerance: f64) -> Result<Intent, Diagnostics> {
     let mut settled = intent.clone();
     // Flutes differ in their index only, so one search serves them all.
     let mut found: Option<(Logarithmic, f64)> = None;
@@ -25,7 +25,7 @@ pub fn settle(intent: &Intent, form: Form, tolerance: f64) -> Result<Intent, Dia
         let Step::Cut(cut) = &mut located.step else { continue };
         let Curve::Logarithmic(log) = &mut cut.curve else { continue };
         log.method = match log.method {
-            Method::Auto if form == Form::Lines && !log.curve.is_straight() => Method::OddEven,
+            Method::Auto if form == Form::Lines && (asked || !log.curve.is_straight()) => Method::OddEven,
             Method::Auto => Method::Direct,
             method @ (Method::OddEven | Method::Direct) => method,
         };
