@@ -27,27 +27,22 @@ pub fn interpolate(
     for located in &intent.program.steps {
         let step = match &located.step {
             Step::Cut(Cut { feed, role, curve: Curve::Logarithmic(log) }) => {
-                let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
-                if let Some((_, pieces)) = fitted.as_ref().filter(|(known, _)| *known == base) {
-                    let curve = Curve::Polynomial(placed(pieces, log));
-                    steps.push(Located {
-                        step: Step::Cut(Cut { feed: *feed, role: *role, curve }),
-                        span: located.span,
-                    });
-                    continue;
-                }
-                let curve = follow(log, form, machine, tolerance, asked)
-                    .map_err(|error| out_of_reach(error, located.span))?;
-                let curve = match curve {
-                    Curve::Polynomial(pieces) => {
-                        let here = placed(&pieces, log);
-                        fitted = Some((base, pieces));
-                        Curve::Polynomial(here)
+                let refused = |error| out_of_reach(error, located.span);
+                let curve = match piece_degree(log, form, machine) {
+                    Some(degree) => {
+                        let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
+                        let known = fitted.take().filter(|(known, _)| *known == base);
+                        let (_, pieces) = fitted.insert(match known {
+                            Some(known) => known,
+                            None => {
+                                let shared = machine.spline.shared_parameter;
+                                let pieces = pieces(&base, degree, shared, tolerance).map_err(refused)?;
+                                (base, pieces)
+                            }
+                        });
+                        Curve::Polynomial(placed(pieces, log))
                     }
-                    curve @ (Curve::Lines(_)
-                    | Curve::Nurbs(_)
-                    | Curve::Through(..)
-                    | Curve::Logarithmic(_)) => curve,
+                    None => points(log, form, tolerance, asked).map_err(refused)?,
                 };
                 Step::Cut(Cut { feed: *feed, role: *role, curve })
             }
@@ -66,32 +61,29 @@ fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
         .hint("allow a larger tolerance")
 }
 
-/// One curve as lines or points where it stands, or as pieces of the curve that all flutes share.
-fn follow(
-    log: &Logarithmic,
-    form: Form,
-    machine: &Machine,
-    tolerance: f64,
-    asked: f64,
-) -> Result<Curve, FitError> {
-    let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
+/// The degree of the pieces that a curve is to be made of; none where it is made of points.
+fn piece_degree(log: &Logarithmic, form: Form, machine: &Machine) -> Option<usize> {
     match (log.method, form) {
-        (_, Form::Through(kind)) => {
+        (Method::OddEven, _) | (_, Form::Lines | Form::Through(_)) => None,
+        (Method::Auto | Method::Direct, Form::Polynomial { closing: false }) => {
+            Some(machine.spline.poly_degree)
+        }
+        (Method::Auto | Method::Direct, Form::Polynomial { closing: true } | Form::Nurbs) => Some(3),
+    }
+}
+
+/// One curve as points: those that the control leads its own spline through, or the ends of lines.
+fn points(log: &Logarithmic, form: Form, tolerance: f64, asked: f64) -> Result<Curve, FitError> {
+    match (form, log.method) {
+        (Form::Through(kind), _) => {
             Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter())))
         }
-        (Method::OddEven, Form::Lines | Form::Polynomial { .. } | Form::Nurbs) => {
+        (Form::Lines | Form::Polynomial { .. } | Form::Nurbs, Method::OddEven) => {
             Ok(Curve::Lines(polyline(log, steps(log).map_err(|_| FitError { tolerance })?)))
         }
-        (Method::Auto | Method::Direct, Form::Lines) => {
+        (Form::Lines | Form::Polynomial { .. } | Form::Nurbs, Method::Auto | Method::Direct) => {
             let xs = fit::chords(&log.curve, tolerance)?;
             Ok(Curve::Lines(polyline(log, xs.into_iter().skip(1).map(|x| (x, log.curve.angle(x))))))
-        }
-        (Method::Auto | Method::Direct, Form::Polynomial { closing }) => {
-            let degree = if closing { 3 } else { machine.spline.poly_degree };
-            pieces(&base, degree, machine.spline.shared_parameter, tolerance)
-        }
-        (Method::Auto | Method::Direct, Form::Nurbs) => {
-            pieces(&base, 3, machine.spline.shared_parameter, tolerance)
         }
     }
 }
@@ -121,18 +113,18 @@ fn placed(pieces: &[Bezier], log: &Logarithmic) -> Vec<Bezier> {
 
 /// The fewest pieces: X linear in the parameter where that needs no more of them, since such blocks mean the same
 /// whether the control lets A follow the parameter or the arc length.
-fn pieces(log: &Logarithmic, degree: usize, shared: bool, tolerance: f64) -> Result<Curve, FitError> {
+fn pieces(log: &Logarithmic, degree: usize, shared: bool, tolerance: f64) -> Result<Vec<Bezier>, FitError> {
     if log.curve.is_straight() {
         let line = Bezier::line(log.curve.position(0.0), log.curve.position(log.curve.end()));
-        return Ok(Curve::Polynomial(vec![line]));
+        return Ok(vec![line]);
     }
     let linear = fit::linear_in_x(&log.curve, degree, tolerance);
     if !shared {
-        return linear.map(Curve::Polynomial);
+        return linear;
     }
     let along = fit::along_itself(&log.curve, tolerance)?;
     match linear {
-        Ok(linear) if linear.len() <= along.len() => Ok(Curve::Polynomial(linear)),
-        _ => Ok(Curve::Polynomial(along)),
+        Ok(linear) if linear.len() <= along.len() => Ok(linear),
+        _ => Ok(along),
     }
 }
