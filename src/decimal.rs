@@ -5,6 +5,7 @@
 //! float (ties to even), so `round(x, n)` has the digits that `format!("{x:.n$}")` prints, without the text and
 //! without its negative zero.
 
+use crate::units::{Axes, DEGREES, Kind, MAX_AXES};
 use std::cmp::Ordering;
 
 /// The greatest number of decimals.
@@ -71,6 +72,18 @@ fn round_ties_even(x: f64) -> f64 {
 /// One correctly rounded division of two exact numbers while |units| ≤ 2⁵³; larger integers are rounded first.
 pub fn units_to_f64(units: i64, digits: u8) -> f64 {
     units as f64 / power_of_ten(digits) as f64
+}
+
+/// What one unit of the last decimal in every axis makes together, mm, rotary axes counted at `radius` mm.
+pub fn unit_at_surface(axes: &Axes, digits: &[u8; MAX_AXES], radius: f64) -> f64 {
+    let mm = |i: usize| {
+        let unit = 1.0 / power_of_ten(digits[i]) as f64;
+        match axes.kind(i) {
+            Kind::Linear | Kind::Direction => unit,
+            Kind::Rotary => unit / DEGREES * radius,
+        }
+    };
+    (0..axes.count()).map(|i| mm(i) * mm(i)).sum::<f64>().sqrt()
 }
 
 /// A decimal number, normalised: the last digit is not zero unless `digits` is.

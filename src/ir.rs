@@ -83,6 +83,16 @@ pub struct Intent {
     pub name_span: Option<Span>,
 }
 
+impl Intent {
+    /// Its logarithmic paths with their feeds, and where each was asked for.
+    pub fn logarithmic(&self) -> impl Iterator<Item = (&Logarithmic, Option<f64>, Span)> {
+        self.program.steps.iter().filter_map(|located| match &located.step {
+            Step::Cut(Cut { feed, curve: Curve::Logarithmic(log), .. }) => Some((log, *feed, located.span)),
+            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+        })
+    }
+}
+
 /// A shape that can be evaluated exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {

@@ -50,10 +50,9 @@ pub mod verify;
 use diagnostic::{Diagnostic, Diagnostics};
 use dialect::{Form, Motion};
 use front::Language;
-use ir::{Curve, Cut, Intent, Located, Method, Role, Step, Written};
+use ir::{Curve, Cut, Intent, Located, Method, Step, Written};
 use machine::Machine;
 use source::{Source, SourceId, Sources};
-use units::{DEGREES, Kind};
 use verify::Report;
 
 /// What the command line may say beside input and machine.
@@ -253,7 +252,7 @@ pub fn verify_program(
 
 /// The form that a program's paths have: that of its first curve, or lines.
 fn form_of(decimals: &ir::Decimals) -> Form {
-    let curves = decimals.program.steps.iter().filter_map(|located| match &located.step {
+    let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step {
         Step::Cut(cut) => match &cut.curve {
             Written::Lines(_) => None,
             Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
@@ -262,7 +261,7 @@ fn form_of(decimals: &ir::Decimals) -> Form {
         },
         Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
     });
-    curves.take(1).next().unwrap_or(Form::Lines)
+    curves.next().unwrap_or(Form::Lines)
 }
 
 fn with_options(mut intent: Intent, options: &Options) -> Intent {
@@ -276,18 +275,10 @@ fn with_options(mut intent: Intent, options: &Options) -> Intent {
     intent
 }
 
-/// The paths of an intent that are logarithmic curves.
-fn logarithmic(intent: &Intent) -> impl Iterator<Item = (&ir::Logarithmic, source::Span)> {
-    intent.program.steps.iter().filter_map(|located| match &located.step {
-        Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) => Some((log, located.span)),
-        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
-    })
-}
-
 /// A length that rounds to nothing, or to a diameter of nothing, is no path.
 fn length_within_decimals(intent: &Intent, machine: &Machine) -> Result<(), Diagnostics> {
     let digits = machine.axis_digits()[0];
-    for (log, span) in logarithmic(intent) {
+    for (log, _, span) in intent.logarithmic() {
         let units = decimal::round_units(log.curve.end(), digits).unwrap_or(0);
         let end = decimal::units_to_f64(units, digits);
         if units <= 0 || 1.0 + log.curve.beta() * end <= 0.0 {
@@ -304,7 +295,8 @@ fn length_within_decimals(intent: &Intent, machine: &Machine) -> Result<(), Diag
 /// The warning where whole cycles were asked for and no steps are made.
 fn overrun_without_steps(intent: &Intent) -> Diagnostics {
     let mut warnings = Diagnostics::new();
-    if let Some((_, span)) = logarithmic(intent).find(|(log, _)| log.overrun && log.method == Method::Direct)
+    if let Some((_, _, span)) =
+        intent.logarithmic().find(|(log, ..)| log.overrun && log.method == Method::Direct)
     {
         let message =
             "overrun is a rule of odd-even steps; this path follows the curve itself and ends at its length";
@@ -319,26 +311,12 @@ fn overrun_without_steps(intent: &Intent) -> Diagnostics {
 
 /// The greatest radius at which a rotary axis counts, mm.
 fn radius(intent: &Intent) -> f64 {
-    let radii = intent.program.steps.iter().map(|located| match &located.step {
-        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) => log.curve.max_radius(),
-        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 0.0,
-    });
-    radii.fold(0.0, f64::max)
+    intent.logarithmic().map(|(log, ..)| log.curve.max_radius()).fold(0.0, f64::max)
 }
 
 /// What half a unit of the last decimal in every axis makes at the surface, mm.
 fn resolution(intent: &Intent, machine: &Machine) -> f64 {
-    let digits = machine.axis_digits();
-    let mut sum = 0.0;
-    for (i, (_, kind)) in machine.axes.as_slice().iter().enumerate() {
-        let half = 0.5 / decimal::power_of_ten(digits[i]) as f64;
-        let mm = match kind {
-            Kind::Linear | Kind::Direction => half,
-            Kind::Rotary => half / DEGREES * radius(intent),
-        };
-        sum += mm * mm;
-    }
-    f64::sqrt(sum)
+    0.5 * decimal::unit_at_surface(&machine.axes, &machine.axis_digits(), radius(intent))
 }
 
 /// The tolerance that holds: the command line's, the input's, the machine's.
@@ -374,7 +352,7 @@ fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f6
 fn steps_exceed_tolerance(intent: &Intent, report: &Report, tolerance: f64) -> Diagnostics {
     let mut warnings = Diagnostics::new();
     let Some(from_ideal) = report.from_ideal.filter(|bound| tolerance < bound.mm) else { return warnings };
-    let Some((log, span)) = logarithmic(intent).next() else { return warnings };
+    let Some((log, _, span)) = intent.logarithmic().next() else { return warnings };
     let message = format!(
         "the steps leave the ideal curve by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
         from_ideal.mm

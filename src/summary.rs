@@ -1,7 +1,6 @@
 //! What a compilation tells beside the program.
 
-use crate::geom::logcurve::LogCurve;
-use crate::ir::{Curve, Cut, Intent, Role, Step};
+use crate::ir::{Intent, Step};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::DEGREES;
 use crate::verify::Report;
@@ -83,7 +82,7 @@ impl Summary {
         }
         let (cutting_minutes, speed) = times(intent, machine);
         if let (RotaryFeed::DegreesAsMm, Some([slow, fast])) = (machine.rotary_feed, speed)
-            && intent_turns(intent)
+            && intent.logarithmic().any(|(log, ..)| log.curve.k() != 0.0)
         {
             notes.push(format!(
                 "F counts degrees of A as mm on this machine: X Y Z move at {slow:.1} to {fast:.1} mm/min, not at F"
@@ -197,15 +196,7 @@ fn plural(n: usize) -> &'static str {
 impl CutterFigures {
     /// The figures of the first flute; none where there is no cutter.
     pub fn of(intent: &Intent) -> Option<CutterFigures> {
-        let flutes: Vec<_> = intent
-            .program
-            .steps
-            .iter()
-            .filter_map(|located| match &located.step {
-                Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) => Some(log),
-                Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
-            })
-            .collect();
+        let flutes: Vec<_> = intent.logarithmic().map(|(log, ..)| log).collect();
         let log = flutes.first()?;
         let mut indices: Vec<f64> = Vec::new();
         for flute in &flutes {
@@ -228,25 +219,12 @@ impl CutterFigures {
     }
 }
 
-/// The paths of an intent with their feeds.
-fn paths(intent: &Intent) -> impl Iterator<Item = (&LogCurve, f64)> {
-    intent.program.steps.iter().filter_map(|located| match &located.step {
-        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), feed: Some(feed) }) => {
-            Some((&log.curve, *feed))
-        }
-        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
-    })
-}
-
-fn intent_turns(intent: &Intent) -> bool {
-    paths(intent).any(|(curve, _)| curve.k() != 0.0)
-}
-
 /// Cutting time in minutes, and the least and greatest speed along X Y Z.
 fn times(intent: &Intent, machine: &Machine) -> (f64, Option<[f64; 2]>) {
     let mut minutes = 0.0;
     let mut speed: Option<[f64; 2]> = None;
-    for (curve, feed) in paths(intent) {
+    for (log, feed, _) in intent.logarithmic() {
+        let (Some(feed), curve) = (feed, &log.curve) else { continue };
         let c = curve.length_per_x();
         let (length, at) = match machine.rotary_feed {
             RotaryFeed::Free => (curve.end() * c, [feed; 2]),

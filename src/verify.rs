@@ -22,9 +22,10 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Reading;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
-use crate::geom::logcurve::LogCurve;
 use crate::geom::nurbs::{Nurbs, NurbsError};
-use crate::ir::{Curve, Cut, Decimals, Intent, Located, Polyline, Role, Step, Units, Written, WrittenPoints};
+use crate::ir::{
+    Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Step, Units, Written, WrittenPoints,
+};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
 use crate::units::Position;
@@ -64,7 +65,7 @@ pub struct Report {
 }
 
 /// The distance of odd-even steps from the curve, the same for every flute of a cutter.
-struct Ideal(Option<(LogCurve, f64, Bound)>);
+struct Ideal(Option<(Logarithmic, Bound)>);
 
 /// Compares what was read with what was asked, in `text`, within `tolerance` mm. The intent must be settled.
 ///
@@ -273,7 +274,7 @@ impl<'p> Cursor<'p> {
         }
     }
 
-    /// Meets a path.
+    /// Meets a path; remarks before it are behind.
     fn cut(
         &mut self,
         curve: &Curve,
@@ -281,7 +282,6 @@ impl<'p> Cursor<'p> {
         tolerance: f64,
         ideal: &mut Ideal,
     ) -> Result<Found, Diagnostics> {
-        self.skip_comments();
         let Some(Located { step: Step::Cut(cut), .. }) = self.step() else {
             return Err(self.differs("step-differs", "here a path was asked".to_owned()));
         };

@@ -9,6 +9,7 @@ mod io;
 mod machines;
 mod man;
 mod schema;
+mod subject;
 mod verify;
 
 use clap::{Parser, Subcommand, ValueEnum};

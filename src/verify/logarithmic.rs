@@ -1,14 +1,14 @@
 //! Paths of a cutter's flute, in every form that they are written in.
 
 use super::{Cursor, Found, Ideal, Status};
-use crate::decimal::round_units;
+use crate::decimal::{round_units, unit_at_surface};
 use crate::diagnostic::Diagnostics;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric, OrderError, log_chord, log_piece, segment_piece};
 use crate::geom::logcurve::LogCurve;
-use crate::geom::oddeven::OddEven;
+use crate::geom::oddeven::{OddEven, polyline_deviation};
 use crate::ir::{Logarithmic, Method, Written, WrittenPoints};
-use crate::pass::settle::through_points;
+use crate::pass::settle::{steps, through_points};
 use crate::units::{DEGREES, Position};
 
 impl Cursor<'_> {
@@ -29,23 +29,21 @@ impl Cursor<'_> {
             cutting_length: curve.end() * curve.length_per_x(),
         };
         if log.method == Method::OddEven {
-            let dl = log.dl.unwrap_or(crate::pass::settle::MAX_STEP);
-            let steps = OddEven::new(*curve, dl, log.overrun)
-                .map_err(|error| self.differs("not-comparable", error.to_string()))?;
+            let asked = steps(log).map_err(|error| self.differs("not-comparable", error.to_string()))?;
             // An overrun runs on to the last step.
-            let overrun_end = if log.overrun { steps.clone().last().map(|(x, _)| x) } else { None };
-            let key = curve.base();
-            let known =
-                ideal.0.filter(|(curve, step, _)| *curve == key && *step == dl).map(|(_, _, bound)| bound);
-            let from_ideal =
-                known.unwrap_or_else(|| crate::geom::oddeven::polyline_deviation(curve, steps.clone()));
-            ideal.0 = Some((key, dl, from_ideal));
+            let overrun_end = if log.overrun { asked.clone().last().map(|(x, _)| x) } else { None };
+            let key = Logarithmic { curve: curve.base(), ..log.clone() };
+            let from_ideal = match ideal.0.take() {
+                Some((known, bound)) if known == key => bound,
+                _ => polyline_deviation(curve, asked.clone()),
+            };
+            ideal.0 = Some((key, from_ideal));
             found.from_ideal = Some(from_ideal);
             match written {
-                Written::Lines(points) => self.odd_even_lines(curve, steps, points, &mut found)?,
+                Written::Lines(points) => self.odd_even_lines(curve, asked, points, &mut found)?,
                 Written::Polynomial(_) | Written::Nurbs(_) => {
                     let pieces = self.pieces(written)?;
-                    self.odd_even_pieces(curve, steps, &pieces, &mut found)?;
+                    self.odd_even_pieces(curve, asked, &pieces, &mut found)?;
                     found.path_blocks = blocks(written, pieces.len());
                     self.advance();
                 }
@@ -138,7 +136,7 @@ impl Cursor<'_> {
         let radius = curve.max_radius().max(far);
         let metric = Metric::new(&metric_kinds, radius);
         // Two roundings of a position, at the radius.
-        let slack = 1.0e-9 + self.resolution(radius);
+        let slack = 1.0e-9 + unit_at_surface(&self.decimals.program.axes, &self.decimals.digits, radius);
         let mut from = curve.position(0.0);
         let mut rest = pieces.iter().peekable();
         if let Some(first) = pieces.first() {
@@ -170,13 +168,6 @@ impl Cursor<'_> {
             return Err(self.differs("more-than-asked", "the path goes on after its end".to_owned()));
         }
         Ok(())
-    }
-
-    /// One unit of the last decimal in every axis, mm at `radius`.
-    fn resolution(&self, radius: f64) -> f64 {
-        let unit = |axis: usize| 1.0 / crate::decimal::power_of_ten(self.decimals.digits[axis]) as f64;
-        let arc = unit(3) / DEGREES * radius;
-        (unit(0) * unit(0) + unit(1) * unit(1) + unit(2) * unit(2) + arc * arc).sqrt()
     }
 
     /// The curve written as lines: chords at equal X, to the end.

@@ -1,0 +1,59 @@
+//! What `check` and `dump` look at: an input, or a program with the machine that it was written for.
+
+use super::{io, machine};
+use splinepost::diagnostic::{Diagnostic, Diagnostics, Warned};
+use splinepost::dialect::Reading;
+use splinepost::front::cutter::{self, CutterJob};
+use splinepost::machine::Machine;
+use splinepost::source::{SourceId, Sources};
+
+/// A file, and how to read it.
+#[derive(clap::Args, Debug)]
+pub(super) struct Subject {
+    /// The input file, or - for standard input
+    input: String,
+    /// A machine: the input is then an NC program for it, unless --from says otherwise
+    #[arg(long, value_name = "MACHINE")]
+    to: Option<String>,
+    /// The input's language: cutter, or nc with --to
+    #[arg(long, value_name = "LANGUAGE")]
+    from: Option<String>,
+}
+
+/// A file that was understood.
+pub(super) enum Understood {
+    Program(Box<Machine>, Warned<Reading>),
+    Input(CutterJob),
+}
+
+impl Subject {
+    /// Reads it.
+    pub(super) fn understand(&self, sources: &mut Sources) -> Result<Understood, Diagnostics> {
+        *sources = Sources::new(io::read_source(&self.input)?);
+        if let Some(to) = self.machine_of_program(sources)? {
+            let machine = machine(to, sources)?;
+            let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
+            let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
+            return Ok(Understood::Program(Box::new(machine), reading));
+        }
+        let Some(input) = sources.get(SourceId::INPUT) else { return Err(Diagnostics::new()) };
+        cutter::parse(input, SourceId::INPUT).map(Understood::Input)
+    }
+
+    /// The machine of an NC program: that is what the file is where `--from nc` says so, or where a machine is named and
+    /// the text is in no language of inputs.
+    fn machine_of_program(&self, sources: &Sources) -> Result<Option<&str>, Diagnostics> {
+        let looks_like_input =
+            sources.get(SourceId::INPUT).is_some_and(|input| splinepost::front::detect(input).is_ok());
+        match (self.from.as_deref(), self.to.as_deref()) {
+            (Some("nc"), Some(to)) => Ok(Some(to)),
+            (Some("nc"), None) => Err(Diagnostic::error(
+                "machine-missing",
+                "an NC program is read with the machine that --to names",
+            )
+            .into()),
+            (None, Some(to)) if !looks_like_input => Ok(Some(to)),
+            (from, _) => super::compile::language(from, sources).map(|_| None),
+        }
+    }
+}
