@@ -3,7 +3,7 @@
 //! All of it is forgotten at the start of a section, so that a program can be restarted there.
 
 use crate::decimal::{Decimal, Spelling, write_units};
-use crate::ir::{Step, Units};
+use crate::ir::{Cut, Program, Step, Units, Written};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 use crate::units::MAX_AXES;
@@ -145,24 +145,67 @@ impl<'m> Modal<'m> {
             self.position[i] = Some(point[i]);
         }
     }
+}
 
-    /// The lines of a tool call or a spindle's start, and how many steps they cover.
-    pub fn frame_lines<C>(
-        &self,
-        step: &Step<Decimal, C>,
-        next: Option<&Step<Decimal, C>>,
-    ) -> (Vec<String>, usize) {
-        let frame = &self.machine.frame;
-        let fill = |lines: &[Template], tool: &str, rpm: &str| {
-            lines.iter().map(|line| line.fill(&[("tool", tool), ("rpm", rpm)])).collect()
-        };
-        match (step, next) {
-            (Step::Tool(tool), Some(Step::Spindle(rpm))) if !frame.tool_spindle.is_empty() => {
-                (fill(&frame.tool_spindle, &tool.to_string(), &rpm.to_string()), 2)
+/// One part of a program's text.
+pub enum Part<'p> {
+    /// A fixed line of the machine file, filled in.
+    Fixed(String),
+    /// The lines of a tool call are written; in one with the spindle's start, or alone.
+    Tool(u32, ToolLines),
+    /// The lines of the spindle's start are written.
+    Spindle,
+    /// A remark: a section starts.
+    Comment(&'p str),
+    /// Rapid traverse.
+    Rapid(&'p [(usize, Decimal)]),
+    /// A path at feed.
+    Cut(&'p Cut<Decimal, Written>),
+}
+
+/// How a tool call was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToolLines {
+    /// By the lines of `tool`.
+    Alone,
+    /// By the lines of `tool_spindle`.
+    WithSpindle,
+}
+
+/// A program with the machine's lines round it, part by part: what every writer walks.
+pub fn parts<'p>(program: &'p Program<Decimal, Written>, machine: &Machine) -> Vec<Part<'p>> {
+    let frame = &machine.frame;
+    let fill = |lines: &[Template], values: &[(&str, &str)]| -> Vec<Part<'p>> {
+        lines.iter().map(|line| Part::Fixed(line.fill(values))).collect()
+    };
+    let mut parts = fill(&frame.header, &[("name", &program.name)]);
+    let mut steps = program.steps.iter().map(|located| &located.step).peekable();
+    while let Some(step) = steps.next() {
+        match step {
+            Step::Tool(number) => {
+                let tool = number.to_string();
+                match steps.peek() {
+                    Some(Step::Spindle(rpm)) if !frame.tool_spindle.is_empty() => {
+                        parts
+                            .extend(fill(&frame.tool_spindle, &[("tool", &tool), ("rpm", &rpm.to_string())]));
+                        parts.push(Part::Tool(*number, ToolLines::WithSpindle));
+                        steps.next();
+                    }
+                    _ => {
+                        parts.extend(fill(&frame.tool, &[("tool", &tool)]));
+                        parts.push(Part::Tool(*number, ToolLines::Alone));
+                    }
+                }
             }
-            (Step::Tool(tool), _) => (fill(&frame.tool, &tool.to_string(), ""), 1),
-            (Step::Spindle(rpm), _) => (fill(&frame.spindle, "", &rpm.to_string()), 1),
-            (Step::Comment(_) | Step::Rapid(_) | Step::Cut(_), _) => (Vec::new(), 1),
+            Step::Spindle(rpm) => {
+                parts.extend(fill(&frame.spindle, &[("rpm", &rpm.to_string())]));
+                parts.push(Part::Spindle);
+            }
+            Step::Comment(text) => parts.push(Part::Comment(text)),
+            Step::Rapid(targets) => parts.push(Part::Rapid(targets)),
+            Step::Cut(cut) => parts.push(Part::Cut(cut)),
         }
     }
+    parts.extend(fill(&frame.footer, &[("name", &program.name)]));
+    parts
 }

@@ -3,8 +3,8 @@
 
 use crate::decimal::{Decimal, Spelling};
 use crate::dialect::block::expected_size;
-use crate::dialect::modal::Modal;
-use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written, WrittenPoints, WrittenPolynomial};
+use crate::dialect::modal::{Modal, Part, parts};
+use crate::ir::{Decimals, PolynomialBlock, Units, Written, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, closing_coefficients};
 
@@ -42,40 +42,30 @@ impl Writer<'_> {
     }
 
     fn program(&mut self) {
-        let machine = self.modal.machine;
-        let program = &self.decimals.program;
-        for line in &machine.frame.header {
-            self.block(&line.fill(&[("name", &program.name)]));
-        }
-        let mut at = 0;
-        while let Some(located) = program.steps.get(at) {
-            let next = program.steps.get(at + 1).map(|located| &located.step);
-            let (lines, covered) = self.modal.frame_lines(&located.step, next);
-            for line in lines {
-                self.block(&line);
-            }
-            at += covered;
-            self.goes_on = false;
-            match &located.step {
-                Step::Tool(_) | Step::Spindle(_) => {}
-                Step::Comment(text) => {
+        for part in parts(&self.decimals.program, self.modal.machine) {
+            match part {
+                Part::Fixed(line) => {
+                    self.block(&line);
+                    continue;
+                }
+                Part::Tool(..) | Part::Spindle => {}
+                Part::Comment(text) => {
                     self.modal.begin("");
                     self.modal.text("; ");
                     self.modal.text(text);
                     self.modal.end();
                     self.modal.forget();
                 }
-                Step::Rapid(targets) => self.rapid(targets),
-                Step::Cut(cut) => match &cut.curve {
+                Part::Rapid(targets) => self.rapid(targets),
+                Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
                     Written::Polynomial(polynomial) => self.polynomial(polynomial, cut.feed),
                     // No motion of this dialect has these forms, so that `check` lets none pass.
                     Written::Nurbs(_) | Written::Through(..) => {}
                 },
             }
-        }
-        for line in &machine.frame.footer {
-            self.block(&line.fill(&[("name", &program.name)]));
+            // A fixed line that ends with `~` goes on in the next of its kind only.
+            self.goes_on = false;
         }
     }
 

@@ -3,8 +3,8 @@
 use super::{Offset, is_block};
 use crate::decimal::{Decimal, write_units};
 use crate::dialect::block::expected_size;
-use crate::dialect::modal::Modal;
-use crate::ir::{Decimals, Step, Written, WrittenNurbs, WrittenPoints};
+use crate::dialect::modal::{Modal, Part, ToolLines, parts};
+use crate::ir::{Decimals, Written, WrittenNurbs, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
 use crate::units::Axis;
@@ -51,33 +51,25 @@ impl Writer<'_> {
     }
 
     fn program(&mut self) {
-        let machine = self.modal.machine;
-        let program = &self.decimals.program;
-        for line in &machine.frame.header {
-            self.line(&line.fill(&[("name", &program.name)]));
-        }
-        let mut at = 0;
-        while let Some(located) = program.steps.get(at) {
-            let next = program.steps.get(at + 1).map(|located| &located.step);
-            let (lines, covered) = self.modal.frame_lines(&located.step, next);
-            for line in lines {
-                self.line(&line);
-            }
-            at += covered;
-            match &located.step {
-                Step::Tool(tool) => {
-                    let called = if covered == 2 { self.offset.tool_spindle } else { self.offset.tool };
+        for part in parts(&self.decimals.program, self.modal.machine) {
+            match &part {
+                Part::Fixed(line) => self.line(line),
+                Part::Tool(tool, lines) => {
+                    let called = match lines {
+                        ToolLines::WithSpindle => self.offset.tool_spindle,
+                        ToolLines::Alone => self.offset.tool,
+                    };
                     self.offset_tool = called.then_some(*tool);
                     self.offset_due = self.offset_tool;
                 }
-                Step::Spindle(_) => {}
-                Step::Comment(text) => {
+                Part::Spindle => {}
+                Part::Comment(text) => {
                     self.line(&format!("({text})"));
                     self.modal.forget();
                     self.offset_due = self.offset_tool;
                 }
-                Step::Rapid(targets) => self.rapid(targets),
-                Step::Cut(cut) => {
+                Part::Rapid(targets) => self.rapid(targets),
+                Part::Cut(cut) => {
                     if let Some(tool) = self.offset_due.take() {
                         self.line(&format!("G43 H{tool}"));
                     }
@@ -90,17 +82,11 @@ impl Writer<'_> {
                     }
                 }
             }
-            self.through = match &located.step {
-                Step::Comment(_) => self.through,
-                Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => false,
-                Step::Cut(cut) => match cut.curve {
-                    Written::Through(..) => true,
-                    Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) => false,
-                },
+            self.through = match &part {
+                Part::Comment(_) | Part::Fixed(_) => self.through,
+                Part::Tool(..) | Part::Spindle | Part::Rapid(_) => false,
+                Part::Cut(cut) => matches!(cut.curve, Written::Through(..)),
             };
-        }
-        for line in &machine.frame.footer {
-            self.line(&line.fill(&[("name", &program.name)]));
         }
     }
 

@@ -1,8 +1,8 @@
 //! Spells a legal program for Sinumerik.
 
 use crate::decimal::{Decimal, Spelling, write_units};
-use crate::dialect::modal::Modal;
-use crate::ir::{Decimals, Step, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
+use crate::dialect::modal::{Modal, Part, parts};
+use crate::ir::{Decimals, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
 use crate::units::Kind;
@@ -37,41 +37,24 @@ impl Writer<'_> {
     }
 
     fn program(&mut self) {
-        let machine = self.modal.machine;
-        let program = &self.decimals.program;
-        for line in &machine.frame.header {
-            self.block(&line.fill(&[("name", &program.name)]));
-        }
-        let mut at = 0;
-        while let Some(located) = program.steps.get(at) {
-            let next = program.steps.get(at + 1).map(|located| &located.step);
-            let (lines, covered) = self.modal.frame_lines(&located.step, next);
-            for line in lines {
-                self.block(&line);
-            }
-            at += covered;
-            match &located.step {
-                Step::Tool(_) | Step::Spindle(_) => {}
-                Step::Comment(text) => {
+        for part in parts(&self.decimals.program, self.modal.machine) {
+            match part {
+                Part::Fixed(line) => self.block(&line),
+                Part::Tool(..) | Part::Spindle => {}
+                Part::Comment(text) => {
                     self.block(&format!("; {text}"));
                     self.modal.forget();
                     self.upath = false;
                     self.splinepath.clear();
                 }
-                Step::Rapid(targets) => self.rapid(targets),
-                Step::Cut(cut) => {
-                    let feed = cut.feed;
-                    match &cut.curve {
-                        Written::Lines(points) => self.lines(points, feed),
-                        Written::Polynomial(polynomial) => self.polynomial(polynomial, &cut.curve, feed),
-                        Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, feed),
-                        Written::Through(kind, points) => self.through(*kind, points, &cut.curve, feed),
-                    }
-                }
+                Part::Rapid(targets) => self.rapid(targets),
+                Part::Cut(cut) => match &cut.curve {
+                    Written::Lines(points) => self.lines(points, cut.feed),
+                    Written::Polynomial(polynomial) => self.polynomial(polynomial, &cut.curve, cut.feed),
+                    Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),
+                    Written::Through(kind, points) => self.through(*kind, points, &cut.curve, cut.feed),
+                },
             }
-        }
-        for line in &machine.frame.footer {
-            self.block(&line.fill(&[("name", &program.name)]));
         }
     }
 
