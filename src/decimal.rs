@@ -67,6 +67,24 @@ fn round_ties_even(x: f64) -> f64 {
     (x + SHIFT) - SHIFT
 }
 
+/// Where an axis counts from: a place, and its rounding. Positions are rounded from there, so that what is alike but for
+/// its place is alike in every digit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// The place, mm or degrees.
+    pub at: f64,
+    /// The place in units of the last decimal.
+    pub units: i64,
+}
+
+impl Origin {
+    /// A position, rounded from here, in units of the last decimal.
+    #[inline]
+    pub fn round(&self, x: f64, digits: u8) -> Option<i64> {
+        round_units(x - self.at, digits)?.checked_add(self.units)
+    }
+}
+
 /// The float nearest to `units` / 10^`digits`.
 ///
 /// One correctly rounded division of two exact numbers while |units| ≤ 2⁵³; larger integers are rounded first.
@@ -166,11 +184,13 @@ pub struct Spelling {
     pub point_always: bool,
     /// `X+30` instead of `X30`.
     pub sign_always: bool,
+    /// `X0.5` instead of `X.5`.
+    pub leading_zero: bool,
 }
 
 impl Spelling {
     /// `30`, `-0.5`.
-    pub const PLAIN: Spelling = Spelling { point_always: false, sign_always: false };
+    pub const PLAIN: Spelling = Spelling { point_always: false, sign_always: false, leading_zero: true };
 }
 
 /// Writes `units` / 10^`digits` without trailing zeros; zero has no sign unless signs are always written.
@@ -183,7 +203,9 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
     let magnitude = units.unsigned_abs();
     let (whole, mut fraction) = split(magnitude, digits);
     let mut buffer = itoa::Buffer::new();
-    out.extend_from_slice(buffer.format(whole).as_bytes());
+    if whole != 0 || fraction == 0 || spelling.leading_zero {
+        out.extend_from_slice(buffer.format(whole).as_bytes());
+    }
     if fraction == 0 {
         if spelling.point_always {
             out.push(b'.');
@@ -328,9 +350,14 @@ mod tests {
     #[test]
     fn spelling_of_points_and_signs() {
         let mut out = Vec::new();
-        write_units(&mut out, 300_000, 4, Spelling { point_always: true, sign_always: true });
+        write_units(
+            &mut out,
+            300_000,
+            4,
+            Spelling { point_always: true, sign_always: true, leading_zero: true },
+        );
         out.push(b' ');
-        write_units(&mut out, 0, 4, Spelling { point_always: true, sign_always: false });
+        write_units(&mut out, 0, 4, Spelling { point_always: true, sign_always: false, leading_zero: true });
         assert_eq!(out, b"+30. 0.");
     }
 

@@ -1,6 +1,6 @@
 //! Programs as text, to be looked at: one step a line, numbers in full precision.
 
-use crate::ir::{Curve, Cut, Decimals, Intent, Method, Polyline, Role, Step, Units, Written};
+use crate::ir::{Curve, Cut, Decimals, Intent, Method, Polyline, Role, Shift, Step, Units, Written};
 use crate::units::{Axes, Position};
 use std::fmt::{Display, Write as _};
 
@@ -41,7 +41,7 @@ pub fn intent(intent: &Intent) -> String {
                 let dl = log.dl.map_or("auto".to_owned(), |dl| dl.to_string());
                 let _ = writeln!(
                     text,
-                    "logarithmic D1 {} S {} C {} r {} length {} {:?} {:?} index {} shift {} {} method {method} dl {dl} overrun {}",
+                    "logarithmic D1 {} S {} C {} r {} length {} {:?} {:?} index {} shift {} {} from {} to {} method {method} dl {dl} overrun {} back {} along {:?}",
                     c.d1,
                     c.s,
                     c.c,
@@ -52,7 +52,11 @@ pub fn intent(intent: &Intent) -> String {
                     log.curve.index,
                     log.curve.shift[0],
                     log.curve.shift[1],
-                    log.overrun
+                    log.curve.start(),
+                    log.curve.end(),
+                    log.overrun,
+                    log.back,
+                    log.along
                 );
             }
         });
@@ -114,6 +118,14 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
         Step::Comment(comment) => writeln!(text, "comment {comment}"),
         Step::Tool(number) => writeln!(text, "tool {number}"),
         Step::Spindle(rpm) => writeln!(text, "spindle {rpm}"),
+        Step::Coolant => writeln!(text, "coolant"),
+        Step::Home(axis) => writeln!(text, "home {}", axes.name(*axis)),
+        Step::Shift(shifts) => {
+            let word = |Shift { axis, to, parameter }: &Shift<N>| {
+                format!(" {} {to}{}", axes.name(*axis), if *parameter { " parameter" } else { "" })
+            };
+            writeln!(text, "shift{}", shifts.iter().map(word).collect::<String>())
+        }
         Step::Rapid(targets) => {
             let words: Vec<String> =
                 targets.iter().map(|(axis, to)| format!("{} {to}", axes.name(*axis))).collect();

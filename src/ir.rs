@@ -12,7 +12,7 @@
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::geom::bezier::Bezier;
-use crate::geom::logcurve::LogCurve;
+use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
 use crate::units::{Axes, MAX_AXES, Position};
@@ -22,6 +22,8 @@ use crate::units::{Axes, MAX_AXES, Position};
 pub struct Program<N, C> {
     /// The program's name.
     pub name: String,
+    /// The program's number, where the control wants one.
+    pub number: u32,
     /// The coordinates of every position.
     pub axes: Axes,
     /// What happens, in order.
@@ -46,16 +48,52 @@ pub enum Step<N, C> {
     Tool(u32),
     /// The spindle turns clockwise, rev/min.
     Spindle(N),
+    /// The coolant flows.
+    Coolant,
+    /// An axis (index into the program's axes) retracts at rapid to its clear position in machine coordinates. Where
+    /// that is in the coordinates of the work nobody knows: the next rapid names the axis again.
+    Home(usize),
+    /// From here on the text counts these axes from other places: a work offset. Positions here stay as they are. None:
+    /// every axis counts from the work's own zero again.
+    Shift(Vec<Shift<N>>),
     /// Rapid traverse of the axes named (index into the program's axes, end position).
     Rapid(Vec<(usize, N)>),
     /// A path at feed.
     Cut(Cut<N, C>),
 }
 
+impl<N, C> Step<N, C> {
+    /// The path, where the step is one.
+    pub fn cut(&self) -> Option<&Cut<N, C>> {
+        match self {
+            Step::Cut(cut) => Some(cut),
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => None,
+        }
+    }
+}
+
+/// Where the text counts an axis from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift<N> {
+    /// Index into the program's axes.
+    pub axis: usize,
+    /// The place, mm or degrees.
+    pub to: N,
+    /// Whether the place is a parameter of the program, which an operator may change: a correction after measuring.
+    pub parameter: bool,
+}
+
 /// A path at feed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut<N, C> {
-    /// mm/min along the path of the linear axes; none where the input does not say, and then no program is written.
+    /// In an intent the speed of what the path is measured along, mm/min or degrees/min; in a program F, a minute. None
+    /// where the input does not say, and then no program is written.
     pub feed: Option<N>,
     /// Whether a motion that was asked for is used here; an approach stays straight lines.
     pub role: Role,
@@ -86,9 +124,12 @@ pub struct Intent {
 impl Intent {
     /// Its logarithmic paths with their feeds, and where each was asked for.
     pub fn logarithmic(&self) -> impl Iterator<Item = (&Logarithmic, Option<f64>, Span)> {
-        self.program.steps.iter().filter_map(|located| match &located.step {
-            Step::Cut(Cut { feed, curve: Curve::Logarithmic(log), .. }) => Some((log, *feed, located.span)),
-            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+        self.program.steps.iter().filter_map(|located| match located.step.cut()? {
+            Cut { feed, curve: Curve::Logarithmic(log), .. } => Some((log, *feed, located.span)),
+            Cut {
+                curve: Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..),
+                ..
+            } => None,
         })
     }
 }
@@ -119,6 +160,10 @@ pub struct Logarithmic {
     pub dl: Option<f64>,
     /// Whole cycles until X reaches or passes the end.
     pub overrun: bool,
+    /// Whether it is run from its end to its start.
+    pub back: bool,
+    /// What its feed is a speed of.
+    pub along: Measure,
 }
 
 /// How a logarithmic curve is followed.
@@ -160,6 +205,16 @@ impl Polyline {
         Polyline { start, stride, values: Vec::new() }
     }
 
+    /// The same line from its end to its start.
+    #[must_use]
+    pub fn reversed(&self) -> Polyline {
+        let mut points: Vec<Position> = std::iter::once(self.start).chain(self.points()).collect();
+        points.reverse();
+        let mut line = Polyline::new(points[0], self.stride);
+        points[1..].iter().for_each(|point| line.push(point));
+        line
+    }
+
     /// Adds a point.
     pub fn push(&mut self, point: &Position) {
         self.values.extend_from_slice(&point[..self.stride]);
@@ -190,6 +245,8 @@ pub struct Decimals {
     pub program: Program<Decimal, Written>,
     /// How many decimals each axis has.
     pub digits: [u8; MAX_AXES],
+    /// What to set up, in remarks before the first step.
+    pub setup: Vec<String>,
 }
 
 impl Decimals {

@@ -29,7 +29,7 @@
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
 //! | [`points`] | the table of interpolated points |
-//! | [`summary`] | what a compilation tells |
+//! | [`setup`], [`summary`] | what a person at the machine must know, and what a compilation tells |
 
 pub mod decimal;
 pub mod diagnostic;
@@ -41,6 +41,7 @@ pub mod ir;
 pub mod machine;
 pub mod pass;
 pub mod points;
+pub mod setup;
 pub mod source;
 pub mod summary;
 pub mod tables;
@@ -52,6 +53,7 @@ use dialect::{Form, Motion};
 use front::Language;
 use ir::{Curve, Cut, Intent, Located, Method, Step, Written};
 use machine::Machine;
+use setup::Setup;
 use source::{Source, SourceId, Sources};
 use verify::Report;
 
@@ -81,6 +83,8 @@ pub struct Output {
     pub intent: Intent,
     /// The tolerance that held, mm.
     pub tolerance: f64,
+    /// What to know at the machine.
+    pub setup: Setup,
     /// What to know.
     pub warnings: Diagnostics,
 }
@@ -111,6 +115,7 @@ pub fn compile(
     options: &Options,
 ) -> Result<Output, Failure> {
     let intent = with_options((language.parse)(sources)?, options);
+    let intent = pass::place::place(intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
     if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {
         let diagnostic = match intent.name_span {
@@ -139,12 +144,12 @@ pub fn compile(
     let mut failure = Failure::from(Diagnostics::new());
     for share in [1.0, 0.7, 0.4, 0.2, 0.05] {
         match attempt(&intent, motion, &machine, tolerance, share * left, options.no_verify) {
-            Ok((text, report, found)) => {
+            Ok(Attempt { text, report, setup, warnings: found }) => {
                 warnings.extend(found);
                 if let Some(report) = &report {
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
                 }
-                return Ok(Output { text, report, motion, intent, tolerance, warnings });
+                return Ok(Output { text, report, motion, intent, tolerance, setup, warnings });
             }
             Err(error) => {
                 let refine = error.diagnostics.0.iter().all(|d| d.id == "deviation-too-large");
@@ -158,6 +163,14 @@ pub fn compile(
     Err(failure)
 }
 
+/// A program that came through all passes.
+struct Attempt {
+    text: String,
+    report: Option<Report>,
+    setup: Setup,
+    warnings: Diagnostics,
+}
+
 /// One way through all passes, with a fit of its own tolerance.
 fn attempt(
     intent: &Intent,
@@ -166,22 +179,25 @@ fn attempt(
     tolerance: f64,
     fit: f64,
     no_verify: bool,
-) -> Result<(String, Option<Report>, Diagnostics), Failure> {
+) -> Result<Attempt, Failure> {
     let program = pass::interpolate::interpolate(intent, motion.form, machine, fit, tolerance)?;
     let mut program = pass::convert::convert(program, motion.form, machine)?;
     if no_verify && let Some(span) = program.steps.first().map(|located| located.span) {
         program.steps.insert(0, Located { step: Step::Comment("NOT VERIFIED".to_owned()), span });
     }
-    let decimals = pass::quantise::quantise(program, motion.form, machine, tolerance, radius(intent))?;
+    let mut decimals = pass::quantise::quantise(program, motion.form, machine, tolerance, radius(intent))?;
+    let setup = Setup::new(intent, &decimals, machine);
+    decimals.setup = setup.remarks(machine);
     let legal = pass::check::check(decimals, machine)?;
     let text = (machine.dialect.write)(&legal.value, machine);
+    let warnings = legal.warnings;
     if no_verify {
-        return Ok((text, None, legal.warnings));
+        return Ok(Attempt { text, report: None, setup, warnings });
     }
     // The reading alone is needed from here on.
     drop(legal.value);
     match verify_text(intent, &text, SourceId::PROGRAM, machine, tolerance) {
-        Ok(report) => Ok((text, Some(report), legal.warnings)),
+        Ok(report) => Ok(Attempt { text, report: Some(report), setup, warnings }),
         Err(diagnostics) => {
             Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) })
         }
@@ -225,6 +241,7 @@ pub fn verify_program(
     options: &Options,
 ) -> Result<Verified, Diagnostics> {
     let intent = with_options((language.parse)(sources)?, options);
+    let intent = pass::place::place(intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
     let tolerance = tolerance(&intent, &machine, options)?;
     let text = sources.get(program).map_or("", |source| source.text.as_str());
@@ -252,14 +269,11 @@ pub fn verify_program(
 
 /// The form that a program's paths have: that of its first curve, or lines.
 fn form_of(decimals: &ir::Decimals) -> Form {
-    let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step {
-        Step::Cut(cut) => match &cut.curve {
-            Written::Lines(_) => None,
-            Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
-            Written::Nurbs(_) => Some(Form::Nurbs),
-            Written::Through(kind, _) => Some(Form::Through(*kind)),
-        },
-        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+    let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step.cut()?.curve {
+        Written::Lines(_) => None,
+        Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
+        Written::Nurbs(_) => Some(Form::Nurbs),
+        Written::Through(kind, _) => Some(Form::Through(*kind)),
     });
     curves.next().unwrap_or(Form::Lines)
 }

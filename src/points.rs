@@ -94,7 +94,10 @@ impl Table {
             max_odd: 0.0,
             max_even: 0.0,
         };
-        for (n, (x, a)) in std::iter::once((0.0, 0.0)).chain(points).enumerate() {
+        for (n, (x, a)) in std::iter::once((flute.curve.start(), flute.curve.angle(flute.curve.start())))
+            .chain(points)
+            .enumerate()
+        {
             let row = row(&flute.curve, n, x, a);
             let error = row.er_pa_rad.abs();
             table.max = table.max.max(error);

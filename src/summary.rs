@@ -1,7 +1,8 @@
 //! What a compilation tells beside the program.
 
 use crate::ir::{Intent, Step};
-use crate::machine::{Machine, RotaryFeed};
+use crate::machine::Machine;
+use crate::setup::Setup;
 use crate::units::DEGREES;
 use crate::verify::Report;
 use serde::Serialize;
@@ -22,10 +23,11 @@ pub struct Summary {
     pub path_blocks: Option<usize>,
     /// The paths' length, mm; none where nothing was verified.
     pub cutting_length: Option<f64>,
-    /// How long the paths take at their feed, minutes: without rapids, approaches and acceleration.
-    pub cutting_minutes: f64,
-    /// The speed along X Y Z at the slowest and the fastest place of a path, mm/min.
-    pub speed: Option<[f64; 2]>,
+    /// How long the paths take at the F of the program, minutes: without rapids, approaches and acceleration; none where
+    /// nothing was verified.
+    pub cutting_minutes: Option<f64>,
+    /// How far the speed is from the one asked for inside a block, as a share of it; none where nothing was verified.
+    pub feed_error: Option<f64>,
     /// mm.
     pub tolerance: f64,
     /// `proved`, `points-only` or `not verified`.
@@ -40,6 +42,8 @@ pub struct Summary {
     pub steps_from_ideal_rad: Option<f64>,
     /// The cutter.
     pub cutter: Option<CutterFigures>,
+    /// What to know at the machine.
+    pub setup: Setup,
     /// What to know.
     pub notes: Vec<String>,
 }
@@ -74,19 +78,18 @@ impl Summary {
         text: &str,
         report: Option<&Report>,
         tolerance: f64,
+        setup: Setup,
     ) -> Summary {
         let mut notes = Vec::new();
         let steps = &intent.program.steps;
         if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
             notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
         }
-        let (cutting_minutes, speed) = times(intent, machine);
-        if let (RotaryFeed::DegreesAsMm, Some([slow, fast])) = (machine.rotary_feed, speed)
-            && intent.logarithmic().any(|(log, ..)| log.curve.k() != 0.0)
-        {
-            notes.push(format!(
-                "F counts degrees of A as mm on this machine: X Y Z move at {slow:.1} to {fast:.1} mm/min, not at F"
-            ));
+        if setup.home.is_empty() {
+            notes.push(
+                "no axis goes home: the tool is changed where the machine stands (no [axis] home in the machine file)"
+                    .to_owned(),
+            );
         }
         notes.push(
             "the path is that of the contact point; the wheel's radius and profile are not modelled"
@@ -106,8 +109,8 @@ impl Summary {
             blocks: text.lines().filter(|line| !line.starts_with(' ')).count(),
             path_blocks: report.map(|r| r.path_blocks),
             cutting_length: report.map(|r| r.cutting_length),
-            cutting_minutes,
-            speed,
+            cutting_minutes: report.map(|r| r.minutes),
+            feed_error: report.map(|r| r.feed_error),
             tolerance,
             status: report.map_or("not verified", |r| r.status.word()),
             deviation_mm: report.map(|r| r.deviation.mm),
@@ -115,6 +118,7 @@ impl Summary {
             steps_from_ideal_mm: report.and_then(|r| r.from_ideal).map(|b| b.mm),
             steps_from_ideal_rad: report.and_then(|r| r.from_ideal).map(|b| b.rad),
             cutter: CutterFigures::of(intent),
+            setup,
             notes,
         }
     }
@@ -134,7 +138,27 @@ impl Summary {
         if let Some(length) = self.cutting_length {
             let _ = writeln!(text, "  length     {length:.3} mm cutting");
         }
-        let _ = writeln!(text, "  time       {:.2} min cutting", self.cutting_minutes);
+        if let Some([least, most]) = self.setup.path_minutes {
+            let paths = self.setup.paths;
+            let (least, most) = (format!("{least:.3}"), format!("{most:.3}"));
+            let each = if least == most { least } else { format!("{least} to {most}") };
+            let in_text =
+                self.cutting_minutes.map_or(String::new(), |m| format!(", {m:.3} min by F in the program"));
+            let _ =
+                writeln!(text, "  time       {paths} path{} of {each} min as asked{in_text}", plural(paths));
+        }
+        if let Some(error) = self.feed_error.filter(|error| 0.0005 < *error) {
+            let _ = writeln!(text, "  feed       within {:.1} percent of what was asked", 100.0 * error);
+        }
+        for figures in &self.setup.axes {
+            let Some([low, high]) = figures.range else { continue };
+            let (axis, unit, speed) = (&figures.axis, figures.unit, figures.speed);
+            let work = if figures.moves_work { ", moves the work" } else { "" };
+            let _ = writeln!(
+                text,
+                "  {axis:<10} {low:.3} to {high:.3} {unit}, at most {speed:.0} {unit}/min at feed{work}"
+            );
+        }
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
                 let _ = writeln!(
@@ -217,28 +241,4 @@ impl CutterFigures {
             dl: log.dl,
         })
     }
-}
-
-/// Cutting time in minutes, and the least and greatest speed along X Y Z.
-fn times(intent: &Intent, machine: &Machine) -> (f64, Option<[f64; 2]>) {
-    let mut minutes = 0.0;
-    let mut speed: Option<[f64; 2]> = None;
-    for (log, feed, _) in intent.logarithmic() {
-        let (Some(feed), curve) = (feed, &log.curve) else { continue };
-        let c = curve.length_per_x();
-        let (length, at) = match machine.rotary_feed {
-            RotaryFeed::Free => (curve.end() * c, [feed; 2]),
-            RotaryFeed::DegreesAsMm => {
-                let local = |x: f64| {
-                    let a = curve.slope(x) * DEGREES;
-                    feed * c / (c * c + a * a).sqrt()
-                };
-                (curve.length_with_degrees(), [local(0.0), local(curve.end())])
-            }
-        };
-        minutes += length / feed;
-        let (slow, fast) = (at[0].min(at[1]), at[0].max(at[1]));
-        speed = Some(speed.map_or([slow, fast], |known| [known[0].min(slow), known[1].max(fast)]));
-    }
-    (minutes, speed)
 }

@@ -17,18 +17,20 @@
 
 mod logarithmic;
 
-use crate::decimal::{Decimal, round_units};
+use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Reading;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
 use crate::geom::nurbs::{Nurbs, NurbsError};
 use crate::ir::{
-    Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Step, Units, Written, WrittenPoints,
+    Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Shift, Step, Units, Written,
+    WrittenPoints,
 };
 use crate::machine::Machine;
+use crate::setup::Setup;
 use crate::source::{SourceId, Span};
-use crate::units::Position;
+use crate::units::{MAX_AXES, Position};
 
 /// How sure the deviation is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,6 +64,12 @@ pub struct Report {
     pub path_blocks: usize,
     /// The paths' length, mm.
     pub cutting_length: f64,
+    /// How long the paths take at their F, minutes: without approaches, rapids and acceleration.
+    pub minutes: f64,
+    /// How far the speed is from the one asked for inside a block, as a share of it.
+    pub feed_error: f64,
+    /// What to know at the machine.
+    pub setup: Setup,
 }
 
 /// The distance of odd-even steps from the curve, the same for every flute of a cutter.
@@ -86,6 +94,9 @@ pub fn verify(
         from_ideal: None,
         path_blocks: 0,
         cutting_length: 0.0,
+        minutes: 0.0,
+        feed_error: 0.0,
+        setup: Setup::default(),
     };
     if decimals.program.axes != intent.program.axes {
         return Err(Diagnostic::refusal("axes-differ", "the program has other axes than the input").into());
@@ -110,11 +121,27 @@ pub fn verify(
         );
         return Err(diagnostic.at(Span::new(id, range.clone()), "first here").into());
     }
-    let mut cursor = Cursor { decimals, text, id, at: 0, within: 0, rate_digits: machine.digits.feed };
+    if decimals.program.number != intent.program.number && machine.has_number() {
+        let message =
+            format!("the program's number is {}, not {}", decimals.program.number, intent.program.number);
+        return Err(Diagnostic::refusal("number-differs", message).into());
+    }
+    let origin = [Origin::default(); MAX_AXES];
+    let mut cursor = Cursor { decimals, machine, text, id, at: 0, within: 0, origin };
     let mut ideal = Ideal(None);
     for located in &intent.program.steps {
         match &located.step {
-            Step::Comment(comment) => cursor.comment(comment)?,
+            Step::Comment(comment) => {
+                for line in crate::setup::wrapped(comment, machine) {
+                    cursor.comment(&line)?;
+                }
+            }
+            Step::Coolant => cursor.meet("the coolant", |step| matches!(step, Step::Coolant))?,
+            Step::Home(axis) => {
+                let what = format!("{} to its home", intent.program.axes.name(*axis));
+                cursor.meet(&what, |step| matches!(step, Step::Home(read) if read == axis))?;
+            }
+            Step::Shift(shifts) => cursor.shift(shifts)?,
             Step::Tool(number) => {
                 cursor
                     .meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?;
@@ -127,6 +154,7 @@ pub fn verify(
                 )?;
             }
             Step::Rapid(targets) => {
+                let origin = cursor.origin;
                 let names: Vec<String> = targets
                     .iter()
                     .map(|(axis, to)| format!("{} {to}", intent.program.axes.name(*axis)))
@@ -134,7 +162,7 @@ pub fn verify(
                 cursor.meet(&format!("a rapid to {}", names.join(" ")), |step| {
                     matches!(step, Step::Rapid(read) if read.len() == targets.len()
                     && read.iter().zip(targets).all(|((i, to), (j, asked))| {
-                        i == j && round_units(*asked, decimals.digits[*i]) == to.units(decimals.digits[*i])
+                        i == j && origin[*i].round(*asked, decimals.digits[*i]) == to.units(decimals.digits[*i])
                     }))
                 })?;
             }
@@ -164,6 +192,8 @@ pub fn verify(
                 if *role == Role::Path {
                     report.path_blocks += found.path_blocks;
                     report.cutting_length += found.cutting_length;
+                    report.minutes += found.minutes;
+                    report.feed_error = report.feed_error.max(found.feed_error);
                 }
             }
         }
@@ -173,18 +203,31 @@ pub fn verify(
         let diagnostic = Diagnostic::refusal("more-than-asked", "the program goes on after what was asked");
         return Err(diagnostic.at(cursor.place(left), "").into());
     }
+    report.setup = Setup::new(intent, decimals, machine);
+    let asked = report.setup.remarks(machine);
+    if decimals.setup != asked {
+        let message = "the remarks that say what to set up are not those of this program";
+        let wrong = decimals.setup.iter().find(|remark| !asked.contains(remark));
+        let start = wrong.and_then(|remark| text.find(remark.as_str()));
+        let place = match (start, wrong) {
+            (Some(start), Some(remark)) => Span::new(id, start..start + remark.len()),
+            _ => decimals.program.steps.first().map_or(Span::new(id, 0..0), |located| located.span),
+        };
+        return Err(Diagnostic::refusal("setup-differs", message).at(place, "").into());
+    }
     Ok(report)
 }
 
 /// Where in the program the comparison stands: a step, and in a run of lines the points already met.
 struct Cursor<'p> {
     decimals: &'p Decimals,
+    machine: &'p Machine,
     text: &'p str,
     id: SourceId,
     at: usize,
     within: usize,
-    /// How many decimals feeds have.
-    rate_digits: u8,
+    /// Where each axis counts from, which is where it is rounded from.
+    origin: [Origin; MAX_AXES],
 }
 
 /// What one cut was found to be.
@@ -194,6 +237,22 @@ struct Found {
     from_ideal: Option<Bound>,
     path_blocks: usize,
     cutting_length: f64,
+    minutes: f64,
+    feed_error: f64,
+}
+
+impl Found {
+    fn new() -> Found {
+        Found {
+            deviation: Bound::ZERO,
+            status: Status::Proved,
+            from_ideal: None,
+            path_blocks: 0,
+            cutting_length: 0.0,
+            minutes: 0.0,
+            feed_error: 0.0,
+        }
+    }
 }
 
 type ReadStep = Located<Decimal, Written>;
@@ -220,6 +279,34 @@ impl<'p> Cursor<'p> {
         Err(self.differs("comment-differs", format!("here the remark `{asked}` was asked")))
     }
 
+    /// A position in units of an axis' last decimal, rounded as the text counts it.
+    #[inline]
+    fn units(&self, axis: usize, x: f64) -> Option<i64> {
+        self.origin[axis].round(x, self.decimals.digits[axis])
+    }
+
+    /// Meets a work offset.
+    fn shift(&mut self, asked: &[Shift<f64>]) -> Result<(), Diagnostics> {
+        let digits = self.decimals.digits;
+        let names: Vec<String> = asked
+            .iter()
+            .map(|shift| format!("{} {}", self.decimals.program.axes.name(shift.axis), shift.to))
+            .collect();
+        self.meet(&format!("a work offset of {}", names.join(" ")), |step| {
+            let Step::Shift(read) = step else { return false };
+            read.len() == asked.len()
+                && read.iter().zip(asked).all(|(read, asked)| {
+                    (read.axis, read.parameter) == (asked.axis, asked.parameter)
+                        && read.to.units(digits[read.axis]) == round_units(asked.to, digits[read.axis])
+                })
+        })?;
+        for shift in asked {
+            let units = round_units(shift.to, digits[shift.axis]).unwrap_or_default();
+            self.origin[shift.axis] = Origin { at: shift.to, units };
+        }
+        Ok(())
+    }
+
     fn advance(&mut self) {
         self.at += 1;
         self.within = 0;
@@ -232,9 +319,14 @@ impl<'p> Cursor<'p> {
                 Some(number) => self.line(*number),
                 None => located.span,
             },
-            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => {
-                located.span
-            }
+            Step::Cut(_)
+            | Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => located.span,
         }
     }
 
@@ -282,27 +374,35 @@ impl<'p> Cursor<'p> {
         tolerance: f64,
         ideal: &mut Ideal,
     ) -> Result<Found, Diagnostics> {
-        let Some(Located { step: Step::Cut(cut), .. }) = self.step() else {
-            return Err(self.differs("step-differs", "here a path was asked".to_owned()));
-        };
-        let same_feed = match (feed, cut.feed) {
-            (Some(asked), Some(read)) => Decimal::round(asked, self.rate_digits) == Some(read),
-            (None, None) => true,
-            (Some(_), None) | (None, Some(_)) => false,
-        };
-        if !same_feed {
-            let asked = feed.map_or("none".to_owned(), |feed| feed.to_string());
-            return Err(
-                self.differs("feed-differs", format!("the feed differs from the {asked} that was asked"))
-            );
+        let cut = self.written()?;
+        if !matches!(curve, Curve::Logarithmic(_)) {
+            self.same_feed(cut.feed, feed)?;
         }
         match curve {
             Curve::Lines(line) => self.lines(line, &cut.curve),
-            Curve::Logarithmic(log) => self.logarithmic(log, &cut.curve, tolerance, ideal),
+            Curve::Logarithmic(log) => self.logarithmic(log, feed, tolerance, ideal),
             Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
                 Err(self.differs("not-comparable", "this form of input cannot be compared yet".to_owned()))
             }
         }
+    }
+
+    /// The path that comes next.
+    fn written(&self) -> Result<&'p Cut<Decimal, Written>, Diagnostics> {
+        match self.step().and_then(|located| located.step.cut()) {
+            Some(cut) => Ok(cut),
+            None => Err(self.differs("step-differs", "here a path was asked".to_owned())),
+        }
+    }
+
+    /// Compares F with what it has to be.
+    fn same_feed(&self, read: Option<Decimal>, asked: Option<f64>) -> Result<(), Diagnostics> {
+        let rounded = asked.map(|asked| Decimal::round(asked, self.machine.digits.feed));
+        if rounded == read.map(Some) {
+            return Ok(());
+        }
+        let asked = asked.map_or("none".to_owned(), |feed| feed.to_string());
+        Err(self.differs("feed-differs", format!("the feed differs from the {asked} that was asked")))
     }
 
     /// Straight moves that were asked as such: every point is met exactly, as rounded.
@@ -316,7 +416,7 @@ impl<'p> Cursor<'p> {
                 return Err(self.differs("less-than-asked", "a straight move is missing here".to_owned()));
             };
             for axis in 0..asked.stride {
-                if round_units(point[axis], self.decimals.digits[axis]) != Some(units[axis]) {
+                if self.units(axis, point[axis]) != Some(units[axis]) {
                     let name = self.decimals.program.axes.name(axis);
                     self.within -= 1;
                     return Err(
@@ -329,20 +429,14 @@ impl<'p> Cursor<'p> {
         }
         let count = asked.count();
         self.leave(points);
-        Ok(Found {
-            deviation: Bound { mm: worst, rad: 0.0 },
-            status: Status::Proved,
-            from_ideal: None,
-            path_blocks: count,
-            cutting_length: 0.0,
-        })
+        Ok(Found { deviation: Bound { mm: worst, rad: 0.0 }, path_blocks: count, ..Found::new() })
     }
 
     /// The next point of a run.
     #[inline]
     fn next_point(&mut self, points: &WrittenPoints) -> Option<Units> {
         let chunk = points.units.get(self.within * points.stride..(self.within + 1) * points.stride)?;
-        let mut units = [0; crate::units::MAX_AXES];
+        let mut units = [0; MAX_AXES];
         units[..chunk.len()].copy_from_slice(chunk);
         self.within += 1;
         Some(units)
@@ -444,7 +538,7 @@ pub fn to_nurbs(decimals: &Decimals, nurbs: &crate::ir::WrittenNurbs) -> Result<
 mod tests {
     use super::*;
     use crate::ir::{Program, WrittenNurbs};
-    use crate::units::{Axes, MAX_AXES};
+    use crate::units::Axes;
 
     #[test]
     fn small_spans_behind_a_large_one_stay_exact() {
@@ -459,8 +553,8 @@ mod tests {
             weights: None,
             lines: Vec::new(),
         };
-        let program = Program { name: String::new(), axes: Axes::xyza(), steps: Vec::new() };
-        let decimals = Decimals { program, digits: [6; MAX_AXES] };
+        let program = Program { name: String::new(), number: 0, axes: Axes::xyza(), steps: Vec::new() };
+        let decimals = Decimals { program, digits: [6; MAX_AXES], setup: Vec::new() };
         let spline = to_nurbs(&decimals, &nurbs).unwrap();
         let lengths: Vec<f64> = spline.beziers().map(|(_, length)| length).collect();
         assert_eq!(lengths, [far as f64, 1.0, 1.0, 1.0]);

@@ -133,6 +133,38 @@ fn every_fault_is_refused() {
     assert!(2000 < tried, "only {tried} faults were tried");
 }
 
+/// Work offsets, calls, parameters and axes that go round: the text means what was asked only as it stands.
+#[test]
+fn every_fault_of_calls_offsets_and_rounds_is_refused() {
+    let (mut missed, mut tried) = (Vec::new(), 0);
+    for dialect in DIALECTS {
+        let file = format!(
+            "extends = \"{}\"\nname = \"calls\"\n[axis.A]\nkind = \"modulo\"\n[spline]\naxes = [\"X\", \"Y\", \"Z\", \"A\"]\n\
+             [text]\nnumber_step = 0\n[feed]\nparameter = true\n[program]\nsubprograms = true\n",
+            dialect.name
+        );
+        let machine = machine(&file);
+        let calls = input("D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nindex = [0, 97, 270]", "")
+            .replace("[process]", "[process]\ncoolant = true\ncorrection = { axis = \"Y\", value = 0.5 }");
+        let rounds =
+            input("D1 = 4\nS = 60\nC = 2\nr = 8\nlength = 30\nindex = [0, 97]", "dl = 1.0\ntolerance = 0.05");
+        for input in [calls, rounds] {
+            let program = compiled(&input, &machine, None).expect("it compiles").text;
+            verified(&input, &program, &machine).expect("the sound program verifies");
+            for (what, text) in damaged(&program) {
+                tried += 1;
+                match verified(&input, &text, &machine) {
+                    Ok(_) => missed.push(format!("{}: {what}", dialect.name)),
+                    Err(errors) => assert!(Severity::Refusal <= errors.worst(), "{what}: no error"),
+                }
+            }
+        }
+    }
+    println!("{tried} faults, {} missed", missed.len());
+    assert!(missed.is_empty(), "{} of {tried} faults missed:\n{}", missed.len(), missed.join("\n"));
+    assert!(1000 < tried, "only {tried} faults were tried");
+}
+
 #[test]
 fn a_wrong_block_number_is_refused() {
     for dialect in DIALECTS {
@@ -142,7 +174,8 @@ fn a_wrong_block_number_is_refused() {
         }
         let input = input("D1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30", "");
         let program = compiled(&input, &machine, None).expect("it compiles").text;
-        let line = program.lines().nth(9).expect("ten lines");
+        let numbered = |line: &&str| line.starts_with(|c: char| c == 'N' || c.is_ascii_digit());
+        let line = program.lines().filter(numbered).nth(9).expect("ten blocks");
         let fault = faults(line).into_iter().next().expect("a number");
         let errors = verified(&input, &program.replacen(line, &fault, 1), &machine).expect_err("refused");
         assert_eq!(errors.0[0].id, "block-number-differs");

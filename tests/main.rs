@@ -24,6 +24,7 @@ mod grammar;
 mod machine;
 mod oracle;
 mod paper;
+mod process;
 mod readme;
 mod robust;
 mod roundtrip;

@@ -52,6 +52,11 @@ pub(crate) fn machines() -> Vec<Machine> {
     machines
 }
 
+/// The same, with one block a path where a fit needs no more, however much the speed varies inside it.
+pub(crate) fn whole_path_machines() -> Vec<Machine> {
+    machines().into_iter().map(|machine| Machine { feed_error: 10.0, ..machine }).collect()
+}
+
 /// A machine from its file.
 pub(crate) fn machine(text: &str) -> Machine {
     Machine::parse(text, SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"))

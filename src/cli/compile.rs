@@ -75,6 +75,7 @@ impl Compile {
             &output.text,
             output.report.as_ref(),
             output.tolerance,
+            output.setup,
         ));
         Ok(())
     }

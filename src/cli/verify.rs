@@ -48,7 +48,16 @@ impl Verify {
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);
         let report = Some(&verified.report);
-        console.summary(&Summary::new(&verified.intent, &machine, None, &text, report, verified.tolerance));
+        let (intent, tolerance) = (&verified.intent, verified.tolerance);
+        console.summary(&Summary::new(
+            intent,
+            &machine,
+            None,
+            &text,
+            report,
+            tolerance,
+            verified.report.setup.clone(),
+        ));
         Ok(())
     }
 }

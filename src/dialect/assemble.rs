@@ -3,12 +3,13 @@
 //! The position is unknown until an axis was named. A cut that starts where some axis is unknown (a fragment without
 //! its approach) starts, for that axis, where it ends, and a warning says so.
 
-use crate::decimal::Decimal;
+use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
-use crate::ir::{Cut, Decimals, Located, Program, Role, Step, Units, Written, WrittenPoints};
+use crate::ir::{Cut, Decimals, Located, Program, Role, Shift, Step, Units, Written, WrittenPoints};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
+use std::collections::BTreeMap;
 
 /// A program in the making.
 pub struct Assembler<'m> {
@@ -26,6 +27,14 @@ pub struct Assembler<'m> {
     pub diagnostics: Diagnostics,
     /// The program's name.
     pub name: String,
+    /// Its number.
+    pub number: u32,
+    /// The parameters that were set.
+    pub parameters: BTreeMap<u32, Decimal>,
+    /// Where the text counts each axis from, in units of its last decimal.
+    shift: Units,
+    reversed: [bool; MAX_AXES],
+    modulo: [bool; MAX_AXES],
     /// The single-letter axes by letter, so that a million words are not compared with names.
     letters: [Option<u8>; 26],
     steps: Vec<Located<Decimal, Written>>,
@@ -51,6 +60,13 @@ impl<'m> Assembler<'m> {
             feed: None,
             diagnostics: Diagnostics::new(),
             name: String::new(),
+            number: 0,
+            parameters: BTreeMap::new(),
+            shift: [0; MAX_AXES],
+            reversed: machine.reversed(),
+            modulo: std::array::from_fn(|i| {
+                i < machine.axes.count() && machine.limits(machine.axes.name(i)).modulo
+            }),
             letters,
             steps: Vec::new(),
             run: None,
@@ -84,10 +100,13 @@ impl<'m> Assembler<'m> {
         Axis::new(name).and_then(|axis| self.machine.axes.index_of(axis))
     }
 
-    /// A value in units of the axis' last decimal; where it has more decimals, an error.
+    /// A position in units of the axis' last decimal, counted from the work's own zero; where it has more decimals, an
+    /// error.
     #[inline]
     pub fn units(&mut self, axis: usize, value: Decimal, range: std::ops::Range<usize>) -> Option<i64> {
-        let units = value.units(self.digits[axis]);
+        let counted = value.units(self.digits[axis]);
+        let turned = |units: i64| if self.reversed[axis] { units.checked_neg() } else { Some(units) };
+        let units = counted.and_then(turned).and_then(|units| units.checked_add(self.shift[axis]));
         if units.is_none() {
             let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
             self.error(
@@ -99,6 +118,53 @@ impl<'m> Assembler<'m> {
             );
         }
         units
+    }
+
+    /// The place nearest to where an axis is that is `units` but for whole turns: the short way round. None where
+    /// nobody knows where the axis is, or where both ways are as long.
+    pub fn nearest(&self, axis: usize, units: i64) -> Option<i64> {
+        let turn = 360 * power_of_ten(self.digits[axis]);
+        let from = self.position[axis]?;
+        let step = units.checked_sub(from)?.rem_euclid(turn);
+        match (2 * step).cmp(&turn) {
+            std::cmp::Ordering::Less => from.checked_add(step),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => from.checked_add(step - turn),
+        }
+    }
+
+    /// Whether an axis wraps at 360 degrees.
+    pub fn wraps(&self, axis: usize) -> bool {
+        self.modulo[axis]
+    }
+
+    /// A coefficient of an axis, as it counts here.
+    pub fn coefficient(&self, axis: usize, a: Decimal) -> Decimal {
+        if self.reversed[axis] { a.times(-1).unwrap_or(a) } else { a }
+    }
+
+    /// The value of a parameter; where nobody set it, an error.
+    pub fn parameter(&mut self, number: u32, range: std::ops::Range<usize>) -> Option<Decimal> {
+        let value = self.parameters.get(&number).copied();
+        if value.is_none() {
+            let letter = self.machine.dialect.parameter.letter;
+            self.error("parameter-unset", format!("nothing sets {letter}{number} before"), range);
+        }
+        value
+    }
+
+    /// Counts axes from other places from here on.
+    pub fn shift(&mut self, shifts: Vec<Shift<Decimal>>, span: Span) {
+        for Shift { axis, to, .. } in &shifts {
+            self.shift[*axis] = to.units(self.digits[*axis]).unwrap_or_default();
+        }
+        self.step(Step::Shift(shifts), span);
+    }
+
+    /// Adds a retraction in machine coordinates.
+    pub fn home(&mut self, axis: usize, span: Span) {
+        self.position[axis] = None;
+        self.step(Step::Home(axis), span);
     }
 
     /// The position where all axes are known; unknown ones from `fallback`, with a warning.
@@ -135,15 +201,21 @@ impl<'m> Assembler<'m> {
 
     /// A program without steps, to evaluate a curve in.
     pub fn empty(&self) -> Decimals {
-        let program = Program { name: String::new(), axes: self.machine.axes, steps: Vec::new() };
-        Decimals { program, digits: self.digits }
+        let program = Program { name: String::new(), number: 0, axes: self.machine.axes, steps: Vec::new() };
+        Decimals { program, digits: self.digits, setup: Vec::new() }
     }
 
     /// The tool that was called last.
     pub fn tool(&self) -> Option<u32> {
         self.steps.iter().rev().find_map(|located| match located.step {
             Step::Tool(number) => Some(number),
-            Step::Comment(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_) => None,
+            Step::Comment(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_) => None,
         })
     }
 
@@ -211,7 +283,23 @@ impl<'m> Assembler<'m> {
     pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
         self.flush();
         let warnings = self.diagnostics.into_result()?;
-        let program = Program { name: self.name, axes: self.machine.axes, steps: self.steps };
-        Ok(Warned { value: Decimals { program, digits: self.digits }, warnings })
+        let mut steps = self.steps;
+        // Remarks before the first step say what to set up; others are sections.
+        let remarks = steps.iter().take_while(|located| matches!(located.step, Step::Comment(_))).count();
+        let first = if self.machine.frame.setup { remarks } else { 0 };
+        let setup = steps.drain(..first).filter_map(|located| match located.step {
+            Step::Comment(text) => Some(text),
+            Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_) => None,
+        });
+        let setup = setup.collect();
+        let Assembler { name, number, machine, digits, .. } = self;
+        let program = Program { name, number, axes: machine.axes, steps };
+        Ok(Warned { value: Decimals { program, digits, setup }, warnings })
     }
 }

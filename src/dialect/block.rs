@@ -1,11 +1,7 @@
-//! Lines of a program, their numbers, and the fixed lines round it: what all readers share.
+//! Lines of a program and their numbers: what all readers share.
 
-use super::assemble::Assembler;
-use crate::decimal::read_decimal;
-use crate::ir::Step;
 use crate::machine::Machine;
 use crate::machine::template::Template;
-use crate::source::Span;
 use std::ops::Range;
 
 /// A reader stops after so many things to tell: the rest follows from the first.
@@ -20,6 +16,8 @@ pub struct Line<'t> {
     pub start: usize,
     /// The line without its end and without blanks behind.
     pub text: &'t str,
+    /// Whether it calls, begins or ends a subprogram, and so does nothing itself.
+    pub structure: bool,
 }
 
 impl Line<'_> {
@@ -29,18 +27,103 @@ impl Line<'_> {
     }
 }
 
-/// The lines of a text.
+/// The lines of a text in the order in which a control comes to them: a subprogram's where it is called.
 pub struct Lines<'t> {
     text: &'t str,
     at: usize,
     number: u32,
+    calls: Option<Calls<'t>>,
 }
+
+/// The subprograms of a text.
+struct Calls<'t> {
+    call: &'t Template,
+    end: &'t Template,
+    bodies: Vec<Body>,
+    /// Where to go on, and the line that stands there; none while no subprogram runs.
+    back: Option<(usize, u32)>,
+    /// How many bytes of calls are still followed.
+    left: usize,
+}
+
+/// A subprogram: its label, where it begins, the line that stands there, and where it ends.
+struct Body {
+    label: String,
+    start: usize,
+    number: u32,
+    end: usize,
+}
+
+/// As many bytes of calls are followed: a text of calls alone must not run for ever.
+const MAX_CALLED: usize = 1 << 31;
 
 impl<'t> Lines<'t> {
     /// From the beginning; a byte-order mark is passed over.
-    pub fn new(text: &'t str) -> Lines<'t> {
-        Lines { text, at: if text.starts_with('\u{feff}') { 3 } else { 0 }, number: 0 }
+    pub fn new(text: &'t str, machine: &'t Machine) -> Lines<'t> {
+        let at = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        let call = &machine.frame.call;
+        let fixed = call.0.split('{').next().unwrap_or_default();
+        let mut lines = Lines { text, at, number: 0, calls: None };
+        if !fixed.is_empty() && text.contains(fixed) {
+            let bodies = lines.bodies(&machine.frame.begin, &machine.frame.end);
+            (lines.at, lines.number) = (at, 0);
+            let end = &machine.frame.end;
+            lines.calls = Some(Calls { call, end, bodies, back: None, left: MAX_CALLED });
+        }
+        lines
     }
+
+    /// Whether a subprogram is called anywhere.
+    pub fn has_calls(&self) -> bool {
+        self.calls.as_ref().is_some_and(|calls| !calls.bodies.is_empty())
+    }
+
+    /// The subprograms of the text.
+    fn bodies(&mut self, begin: &Template, end: &Template) -> Vec<Body> {
+        let mut bodies = Vec::new();
+        let mut open: Option<Body> = None;
+        while let Some(line) = self.line() {
+            let code = unnumbered(line.text);
+            if let Some(body) = open.take() {
+                if filled(end, code).is_some_and(|found| found.is_empty() || found == body.label) {
+                    bodies.push(Body { end: self.at, ..body });
+                } else {
+                    open = Some(body);
+                }
+            } else if let Some(label) = filled(begin, code) {
+                let label = label.to_owned();
+                open = Some(Body { label, start: line.start, number: line.number, end: 0 });
+            }
+        }
+        bodies
+    }
+
+    #[inline]
+    fn line(&mut self) -> Option<Line<'t>> {
+        if self.text.len() <= self.at {
+            return None;
+        }
+        let rest = &self.text[self.at..];
+        let length = rest.find('\n').unwrap_or(rest.len());
+        let text = rest[..length].trim_ascii_end();
+        let line = Line { number: self.number + 1, start: self.at, text, structure: false };
+        self.number += 1;
+        self.at += length + 1;
+        Some(line)
+    }
+}
+
+/// A line without its block number.
+fn unnumbered(line: &str) -> &str {
+    let line = line.trim_ascii_start();
+    let digits = line.strip_prefix('N').unwrap_or(line);
+    let rest = digits.trim_start_matches(|c: char| c.is_ascii_digit());
+    if rest.len() == digits.len() { line } else { rest.trim_ascii_start() }
+}
+
+/// What is filled in where a line is this template: a label, or nothing.
+fn filled<'l>(template: &Template, line: &'l str) -> Option<&'l str> {
+    template.matched(line).map(|values| values.first().map_or("", |(_, label)| *label))
 }
 
 impl<'t> Iterator for Lines<'t> {
@@ -48,14 +131,48 @@ impl<'t> Iterator for Lines<'t> {
 
     #[inline]
     fn next(&mut self) -> Option<Line<'t>> {
-        if self.text.len() <= self.at {
-            return None;
+        if self.calls.is_none() {
+            return self.line();
         }
-        let rest = &self.text[self.at..];
-        let length = rest.find('\n').unwrap_or(rest.len());
-        let line = Line { number: self.number + 1, start: self.at, text: rest[..length].trim_ascii_end() };
-        self.number += 1;
-        self.at += length + 1;
+        self.next_called()
+    }
+}
+
+impl<'t> Lines<'t> {
+    /// The next line of a text with subprograms.
+    fn next_called(&mut self) -> Option<Line<'t>> {
+        let main = |calls: &Calls| calls.back.is_none();
+        // In the text's own order subprograms are passed over.
+        if let Some(calls) = self.calls.as_ref().filter(|calls| main(calls))
+            && let Some(body) = calls.bodies.iter().find(|body| body.start == self.at)
+        {
+            let (from, end) = (self.at, body.end);
+            self.number += self.text[from..end.min(self.text.len())].matches('\n').count() as u32;
+            self.at = end;
+            return self.next_called();
+        }
+        let line = self.line()?;
+        let (at, number) = (self.at, self.number);
+        let Some(calls) = &mut self.calls else { return Some(line) };
+        let code = unnumbered(line.text);
+        if let Some(back) = calls.back {
+            if !calls.bodies.iter().any(|body| body.end == at) || filled(calls.end, code).is_none() {
+                let begins = calls.bodies.iter().any(|body| body.start == line.start);
+                return Some(Line { structure: begins, ..line });
+            }
+            calls.back = None;
+            (self.at, self.number) = back;
+            return Some(Line { structure: true, ..line });
+        }
+        if let Some(called) = filled(calls.call, code)
+            && let Some(body) = calls.bodies.iter().find(|body| body.label == called)
+            && let Some(left) = calls.left.checked_sub(body.end - body.start)
+        {
+            calls.left = left;
+            calls.back = Some((at, number));
+            (self.at, self.number) = (body.start, body.number - 1);
+            return Some(Line { structure: true, ..line });
+        }
         Some(line)
     }
 }
@@ -64,24 +181,51 @@ impl<'t> Iterator for Lines<'t> {
 pub struct Numbering {
     expected: u64,
     step: u64,
-    /// The first block that has another number, or none where it should have one.
-    pub misnumbered: Option<Range<usize>>,
+    /// Blocks that the reader comes to in another order than that of the text, where there are subprograms.
+    met: Option<Vec<(Range<usize>, Option<u64>)>>,
+    misnumbered: Option<Range<usize>>,
 }
 
 impl Numbering {
     /// As the machine numbers its blocks.
-    pub fn new(machine: &Machine) -> Numbering {
+    pub fn new(machine: &Machine, lines: &Lines) -> Numbering {
         let text = &machine.text;
-        Numbering { expected: text.number_start.into(), step: text.number_step.into(), misnumbered: None }
+        Numbering {
+            expected: text.number_start.into(),
+            step: text.number_step.into(),
+            met: lines.has_calls().then(Vec::new),
+            misnumbered: None,
+        }
     }
 
     /// Meets a block with this number, or without one.
+    #[inline]
     pub fn meet(&mut self, number: Option<u64>, range: Range<usize>) {
+        match &mut self.met {
+            Some(met) => met.push((range, number)),
+            None => self.next(number, range),
+        }
+    }
+
+    #[inline]
+    fn next(&mut self, number: Option<u64>, range: Range<usize>) {
         let expected = (0 < self.step).then_some(self.expected);
         if number != expected && self.misnumbered.is_none() {
             self.misnumbered = Some(range);
         }
         self.expected = self.expected.wrapping_add(self.step);
+    }
+
+    /// The first block that has another number, or none where it should have one.
+    pub fn misnumbered(mut self) -> Option<Range<usize>> {
+        if let Some(mut met) = self.met.take() {
+            met.sort_by_key(|(range, _)| range.start);
+            met.dedup_by_key(|(range, _)| range.start);
+            for (range, number) in met {
+                self.next(number, range);
+            }
+        }
+        self.misnumbered
     }
 }
 
@@ -92,172 +236,15 @@ pub fn block_number(text: &str) -> Option<(u64, usize)> {
     text[..digits].parse().ok().map(|number| (number, digits))
 }
 
-/// Where a reader stands among the fixed lines of the machine file.
-pub struct Frame<'m> {
-    machine: &'m Machine,
-    header: usize,
-    footer: usize,
-    /// The template lines that must follow, once the first of a tool call or a spindle's start was met.
-    pending: Vec<&'m Template>,
-    started: bool,
-    name: Option<String>,
-}
-
-/// What a line is.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Met {
-    /// One of the fixed lines.
-    Fixed,
-    /// Something else: a block to be read.
-    Other,
-}
-
-impl<'m> Frame<'m> {
-    /// At the start of a program.
-    pub fn new(machine: &'m Machine) -> Frame<'m> {
-        Frame { machine, header: 0, footer: 0, pending: Vec::new(), started: false, name: None }
-    }
-
-    /// Whether the whole header was met.
-    pub fn header_complete(&self) -> bool {
-        self.header == self.machine.frame.header.len()
-    }
-
-    /// Whether the whole footer was met.
-    pub fn footer_complete(&self) -> bool {
-        self.footer == self.machine.frame.footer.len()
-    }
-
-    /// Whether a line could be one of the fixed lines that come after the header, so that a spline before it has ended.
-    pub fn may_begin(&self, text: &str) -> bool {
-        let frame = &self.machine.frame;
-        let first = text.as_bytes().first();
-        [&frame.tool_spindle, &frame.tool, &frame.spindle, &frame.footer].into_iter().any(|lines| {
-            lines.first().is_some_and(|template| {
-                template.0.as_bytes().first() == first && template.matched(text).is_some()
-            })
-        })
-    }
-
-    /// Meets a line, without its block number.
-    pub fn meet(
-        &mut self,
-        text: &str,
-        span: Span,
-        range: Range<usize>,
-        assembler: &mut Assembler<'m>,
-    ) -> Met {
-        let frame = &self.machine.frame;
-        if let Some(template) = self.pending.first().copied() {
-            self.pending.remove(0);
-            if self.take(template, text, span, false, assembler) {
-                return Met::Fixed;
-            }
-            assembler.error("frame-line", format!("here the machine file has `{}`", template.0), range);
-            self.pending.clear();
-            return Met::Fixed;
-        }
-        if !self.started && self.header < frame.header.len() {
-            let template = &frame.header[self.header];
-            if self.take(template, text, span, true, assembler) {
-                self.header += 1;
-                return Met::Fixed;
-            }
-            if 0 < self.header {
-                assembler.error(
-                    "header-differs",
-                    format!("here the machine file has `{}`", template.0),
-                    range,
-                );
-                self.header = frame.header.len();
-                return Met::Fixed;
-            }
-        }
-        self.started = true;
-        if 0 < self.footer {
-            match frame.footer.get(self.footer) {
-                Some(template) if self.take(template, text, span, true, assembler) => self.footer += 1,
-                Some(template) => {
-                    assembler.error(
-                        "footer-differs",
-                        format!("here the machine file has `{}`", template.0),
-                        range,
-                    );
-                }
-                None => assembler.error("text-after-end", "text after the end of the program", range),
-            }
-            return Met::Fixed;
-        }
-        // Blocks of moves are by far the most, and none of these lines begins like one; a byte decides.
-        let first = text.as_bytes().first().copied();
-        for lines in [&frame.tool_spindle, &frame.tool, &frame.spindle] {
-            if let Some(template) = lines.first()
-                && template.0.as_bytes().first().copied() == first
-                && self.take(template, text, span, true, assembler)
-            {
-                self.pending = lines[1..].iter().collect();
-                return Met::Fixed;
-            }
-        }
-        if let Some(template) = frame.footer.first()
-            && template.0.as_bytes().first().copied() == first
-            && self.take(template, text, span, true, assembler)
-        {
-            self.footer = 1;
-            return Met::Fixed;
-        }
-        Met::Other
-    }
-
-    /// Takes a line that is a template filled in: its tool and spindle become steps, its name the program's.
-    fn take(
-        &mut self,
-        template: &Template,
-        text: &str,
-        span: Span,
-        first: bool,
-        assembler: &mut Assembler<'m>,
-    ) -> bool {
-        let Some(values) = template.matched(text) else { return false };
-        for (variable, value) in values {
-            match variable.as_str() {
-                "name" => {
-                    if self.name.as_deref().is_some_and(|known| known != value) {
-                        return false;
-                    }
-                    value.clone_into(&mut assembler.name);
-                    self.name = Some(value.to_owned());
-                }
-                "tool" => {
-                    let Ok(number) = value.parse::<u32>() else { return false };
-                    // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
-                    if first {
-                        assembler.step(Step::Tool(number), span);
-                    } else if assembler.tool() != Some(number) {
-                        return false;
-                    }
-                }
-                _ => match read_decimal(value.as_bytes(), false) {
-                    Ok((rpm, length)) if length == value.len() => assembler.step(Step::Spindle(rpm), span),
-                    _ => return false,
-                },
-            }
-        }
-        true
-    }
-}
-
 /// About how many bytes a program takes, so that a large one is written without moving it about.
 pub fn expected_size(decimals: &crate::ir::Decimals) -> usize {
     use crate::ir::Written;
     let axes = decimals.program.axes.count();
-    let steps = decimals.program.steps.iter().map(|located| match &located.step {
-        Step::Cut(cut) => match &cut.curve {
-            Written::Lines(points) | Written::Through(_, points) => points.count() * (10 + 11 * axes),
-            Written::Polynomial(polynomial) => polynomial.blocks.len() * (20 + 60 * axes),
-            Written::Nurbs(nurbs) => nurbs.points.len() * (30 + 14 * axes),
-        },
-        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 40,
+    let steps = decimals.program.steps.iter().map(|located| match located.step.cut().map(|cut| &cut.curve) {
+        Some(Written::Lines(points) | Written::Through(_, points)) => points.count() * (10 + 11 * axes),
+        Some(Written::Polynomial(polynomial)) => polynomial.blocks.len() * (20 + 60 * axes),
+        Some(Written::Nurbs(nurbs)) => nurbs.points.len() * (30 + 14 * axes),
+        None => 40,
     });
     500 + steps.sum::<usize>()
 }

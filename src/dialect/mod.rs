@@ -7,16 +7,21 @@
 //! |---|---|
 //! | [`assemble`] | moves read one by one become a program |
 //! | [`block`] | lines, numbers and words that all dialects share |
+//! | [`frame`] | the fixed lines round a program, read back |
 //! | [`modal`] | what a writer remembers between blocks |
+//! | [`parts`] | a program with the machine's lines round it, subprograms too |
 //! | [`sinumerik`] | POLY, BSPLINE, ASPLINE, CSPLINE |
 //! | [`heidenhain`] | SPL |
 //! | [`iso`] | Mazak G06.1, G06.2 |
 
+mod alike;
 pub mod assemble;
 pub mod block;
+pub mod frame;
 pub mod heidenhain;
 pub mod iso;
 pub mod modal;
+pub mod parts;
 pub mod sinumerik;
 
 use crate::diagnostic::{Diagnostics, Warned};
@@ -36,6 +41,10 @@ pub struct Dialect {
     pub motions: &'static [Motion],
     /// What a program may be called, in words, and whether a name is that.
     pub naming: (&'static str, fn(&str) -> bool),
+    /// How parameters of a program are spelled.
+    pub parameter: Parameter,
+    /// How lines go round past 360 degrees on an axis that wraps.
+    pub round: Round,
     /// Spells a legal program.
     pub write: fn(&Legal, &Machine) -> String,
     /// Reads a program.
@@ -46,6 +55,27 @@ impl std::fmt::Debug for Dialect {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)
     }
+}
+
+/// How lines go round past 360 degrees on an axis that wraps, in steps below 180.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Round {
+    /// The place within 0 to 360, in a word that asks for the short way: `A=DC(5)`.
+    Shortest,
+    /// The step: `IA+12`.
+    Step,
+    /// The place within 0 to 360: the control takes the short way.
+    Place,
+}
+
+/// How parameters of a program are spelled.
+pub struct Parameter {
+    /// The letter before its number.
+    pub letter: char,
+    /// The line that sets it: `{n}` is its number, `{value}` its value.
+    pub assign: &'static str,
+    /// What stands behind an address instead of a value.
+    pub word: fn(u32) -> String,
 }
 
 /// What a reader makes of a text.
@@ -70,6 +100,8 @@ pub struct Motion {
     pub form: Form,
     /// What it is, in one line.
     pub about: &'static str,
+    /// The option that the control needs for it; empty for none.
+    pub needs: &'static str,
 }
 
 /// The forms that a curve can take on a control.

@@ -2,10 +2,10 @@
 //!
 //! All of it is forgotten at the start of a section, so that a program can be restarted there.
 
-use crate::decimal::{Decimal, Spelling, write_units};
-use crate::ir::{Cut, Program, Step, Units, Written};
+use super::Round;
+use crate::decimal::{Decimal, Spelling, power_of_ten, write_units};
+use crate::ir::{Shift, Units, WrittenPoints};
 use crate::machine::Machine;
-use crate::machine::template::Template;
 use crate::units::MAX_AXES;
 
 /// A program text in the making, and the modal state behind it.
@@ -17,6 +17,14 @@ pub struct Modal<'m> {
     /// How numbers are spelled.
     pub spelling: Spelling,
     digits: [u8; MAX_AXES],
+    /// Where the text counts each axis from, in units of its last decimal.
+    shift: Units,
+    /// Which axes the control counts the other way.
+    reversed: [bool; MAX_AXES],
+    /// Which axes go round past 360 degrees in the lines that are written.
+    round: [bool; MAX_AXES],
+    /// Each feed that is a parameter, and its number.
+    feeds: Vec<(Decimal, u32)>,
     /// Where each axis is known to be, in units of its last decimal.
     pub position: [Option<i64>; MAX_AXES],
     /// The motion word in force.
@@ -32,11 +40,12 @@ impl<'m> Modal<'m> {
         Modal {
             out: Vec::with_capacity(size),
             machine,
-            spelling: Spelling {
-                point_always: machine.text.point_always,
-                sign_always: machine.text.sign_always,
-            },
+            spelling: machine.text.spelling(),
             digits: machine.axis_digits(),
+            shift: [0; MAX_AXES],
+            reversed: machine.reversed(),
+            round: [false; MAX_AXES],
+            feeds: Vec::new(),
             position: [None; MAX_AXES],
             motion: None,
             feed: None,
@@ -62,7 +71,7 @@ impl<'m> Modal<'m> {
         if step != 0 {
             self.text(prefix);
             self.text(itoa::Buffer::new().format(self.number));
-            self.out.push(b' ');
+            self.gap();
             self.number = self.number.wrapping_add(step);
         }
     }
@@ -72,40 +81,138 @@ impl<'m> Modal<'m> {
         if self.out.last() == Some(&b' ') {
             self.out.pop();
         }
-        self.out.push(b'\n');
+        self.end_line();
+    }
+
+    /// Ends a line.
+    pub fn end_line(&mut self) {
+        self.text(self.machine.text.line_end.text());
+    }
+
+    /// Ends a word. Where blocks have no blanks, a number ends where a letter begins.
+    #[inline]
+    pub fn gap(&mut self) {
+        if self.machine.text.spaces || !self.out.last().is_some_and(|b| b.is_ascii_digit() || *b == b'.') {
+            self.out.push(b' ');
+        }
     }
 
     /// The motion word, where it is not in force.
     pub fn motion(&mut self, word: &'static str) {
         if self.motion != Some(word) {
             self.text(word);
-            self.out.push(b' ');
+            self.gap();
             self.motion = Some(word);
         }
     }
 
-    /// F, where another is in force. A number that is never negative has no sign.
+    /// F, where another is in force: a number, which is never negative and has no sign, or the parameter that holds it.
     pub fn feed(&mut self, feed: Option<Decimal>) {
         if let Some(value) = feed
             && self.feed != feed
         {
             self.out.push(b'F');
-            value.write(&mut self.out, Spelling { sign_always: false, ..self.spelling });
-            self.out.push(b' ');
+            match self.feeds.iter().find(|(known, _)| *known == value) {
+                Some((_, number)) => {
+                    let word = (self.machine.dialect.parameter.word)(*number);
+                    self.text(&word);
+                }
+                None => value.write(&mut self.out, Spelling { sign_always: false, ..self.spelling }),
+            }
+            self.gap();
             self.feed = feed;
         }
+    }
+
+    /// Takes feeds as parameters from here on.
+    pub fn parameters(&mut self, feeds: &[(Decimal, u32)]) {
+        self.feeds = feeds.to_vec();
+    }
+
+    /// Counts these axes from other places from here on, and the others as before.
+    pub fn shift(&mut self, shifts: &[Shift<Decimal>]) {
+        for Shift { axis, to, .. } in shifts {
+            self.shift[*axis] = to.units(self.digits[*axis]).unwrap_or_default();
+        }
+    }
+
+    /// The number that stands in the text for a position.
+    #[inline]
+    pub fn counted(&self, i: usize, units: i64) -> i64 {
+        let units = units - self.shift[i];
+        if self.reversed[i] { -units } else { units }
+    }
+
+    /// The number that stands in the text for a coefficient of axis `i`.
+    pub fn coefficient(&self, i: usize, a: Decimal) -> Decimal {
+        if self.reversed[i] { a.times(-1).unwrap_or(a) } else { a }
+    }
+
+    /// A run of lines starts: axes that wrap, and leave 0 to 360 degrees in it, go round.
+    pub fn lines(&mut self, points: &WrittenPoints) {
+        for i in 0..points.stride {
+            self.round[i] = false;
+            if !self.machine.limits(self.machine.axes.name(i)).modulo {
+                continue;
+            }
+            let turn = 360 * power_of_ten(self.digits[i]);
+            let outside = |units: i64| !(0..turn).contains(&(units - self.shift[i]));
+            self.round[i] = outside(points.start[i]) || points.points().any(|point| outside(point[i]));
+        }
+    }
+
+    /// A run of lines has ended.
+    pub fn lines_end(&mut self) {
+        self.round = [false; MAX_AXES];
+    }
+
+    /// The word of an axis that goes round.
+    fn round_word(&mut self, i: usize, units: i64) {
+        let turn = 360 * power_of_ten(self.digits[i]);
+        let place = self.counted(i, units).rem_euclid(turn);
+        let name = self.machine.axes.name(i);
+        match self.machine.dialect.round {
+            Round::Shortest => {
+                self.text(name.as_str());
+                self.text("=DC(");
+                write_units(&mut self.out, place, self.digits[i], self.spelling);
+                self.text(")");
+            }
+            Round::Step => {
+                let step = units - self.position[i].unwrap_or(units);
+                let step = if self.reversed[i] { -step } else { step };
+                self.text("I");
+                self.axis_name(i);
+                write_units(&mut self.out, step, self.digits[i], self.spelling);
+            }
+            Round::Place => {
+                self.axis_name(i);
+                write_units(&mut self.out, place, self.digits[i], self.spelling);
+            }
+        }
+        self.gap();
     }
 
     /// An axis word. `=` separates a name of more than one letter from its value.
     #[inline]
     pub fn axis(&mut self, i: usize, units: i64) {
+        if self.round[i] {
+            return self.round_word(i, units);
+        }
+        let counted = self.counted(i, units);
+        self.axis_name(i);
+        write_units(&mut self.out, counted, self.digits[i], self.spelling);
+        self.gap();
+    }
+
+    /// The name of an axis, with `=` where a value cannot follow it directly.
+    #[inline]
+    pub fn axis_name(&mut self, i: usize) {
         let name = self.machine.axes.name(i);
         self.text(name.as_str());
         if 1 < name.as_str().len() {
             self.out.push(b'=');
         }
-        write_units(&mut self.out, units, self.digits[i], self.spelling);
-        self.out.push(b' ');
     }
 
     /// The words of the axes named, moved or not.
@@ -139,73 +246,15 @@ impl<'m> Modal<'m> {
         }
     }
 
+    /// Takes an axis to be nowhere known.
+    pub fn lose(&mut self, axis: usize) {
+        self.position[axis] = None;
+    }
+
     /// Takes a point as reached.
     pub fn reached(&mut self, point: &Units) {
         for i in 0..self.machine.axes.count() {
             self.position[i] = Some(point[i]);
         }
     }
-}
-
-/// One part of a program's text.
-pub enum Part<'p> {
-    /// A fixed line of the machine file, filled in.
-    Fixed(String),
-    /// The lines of a tool call are written; in one with the spindle's start, or alone.
-    Tool(u32, ToolLines),
-    /// The lines of the spindle's start are written.
-    Spindle,
-    /// A remark: a section starts.
-    Comment(&'p str),
-    /// Rapid traverse.
-    Rapid(&'p [(usize, Decimal)]),
-    /// A path at feed.
-    Cut(&'p Cut<Decimal, Written>),
-}
-
-/// How a tool call was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ToolLines {
-    /// By the lines of `tool`.
-    Alone,
-    /// By the lines of `tool_spindle`.
-    WithSpindle,
-}
-
-/// A program with the machine's lines round it, part by part: what every writer walks.
-pub fn parts<'p>(program: &'p Program<Decimal, Written>, machine: &Machine) -> Vec<Part<'p>> {
-    let frame = &machine.frame;
-    let fill = |lines: &[Template], values: &[(&str, &str)]| -> Vec<Part<'p>> {
-        lines.iter().map(|line| Part::Fixed(line.fill(values))).collect()
-    };
-    let mut parts = fill(&frame.header, &[("name", &program.name)]);
-    let mut steps = program.steps.iter().map(|located| &located.step).peekable();
-    while let Some(step) = steps.next() {
-        match step {
-            Step::Tool(number) => {
-                let tool = number.to_string();
-                match steps.peek() {
-                    Some(Step::Spindle(rpm)) if !frame.tool_spindle.is_empty() => {
-                        parts
-                            .extend(fill(&frame.tool_spindle, &[("tool", &tool), ("rpm", &rpm.to_string())]));
-                        parts.push(Part::Tool(*number, ToolLines::WithSpindle));
-                        steps.next();
-                    }
-                    _ => {
-                        parts.extend(fill(&frame.tool, &[("tool", &tool)]));
-                        parts.push(Part::Tool(*number, ToolLines::Alone));
-                    }
-                }
-            }
-            Step::Spindle(rpm) => {
-                parts.extend(fill(&frame.spindle, &[("rpm", &rpm.to_string())]));
-                parts.push(Part::Spindle);
-            }
-            Step::Comment(text) => parts.push(Part::Comment(text)),
-            Step::Rapid(targets) => parts.push(Part::Rapid(targets)),
-            Step::Cut(cut) => parts.push(Part::Cut(cut)),
-        }
-    }
-    parts.extend(fill(&frame.footer, &[("name", &program.name)]));
-    parts
 }

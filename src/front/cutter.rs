@@ -19,17 +19,20 @@
 //! [process]          # a program needs feed and retract; a table of points does not
 //! feed = 200.0       # mm/min
 //! retract = { axis = "Z", to = 50.0 }
-//! # spindle = 3000.0  tool = 1
-//! # infeed = { axis = "Y", step = 0.2, passes = 3 }  spark_out = 1  order = "flute"
+//! # spindle = 3000.0  coolant = true  tool = 1  feed_along = "path"  approach_feed = 100.0  return_feed = 1000.0
+//! # travel = "from-D1"  run_in = 2.0  run_out = 2.0
+//! # infeed = { axis = "Y", sign = 1, step = 0.2, passes = 3 }  spark_out = 1  order = "flute"
+//! # correction = { axis = "Y", value = 0.0 }
 //! ```
 //!
 //! Each pass over a flute is a section: retract, return, index, approach, path, retract. Rapids go one axis at a time,
 //! and A never turns before the retract axis is clear.
 
 mod file;
+mod process;
 mod program;
 
-use file::{CutterTable, File, InfeedTable, ProcessTable, RetractTable};
+use file::{CutterTable, File};
 pub use file::{KEYS, schema};
 pub use program::parse_program;
 
@@ -39,7 +42,7 @@ use crate::geom::oddeven::{OddEven, StepError};
 use crate::ir::{Logarithmic, Method};
 use crate::source::{Source, SourceId, Span};
 use crate::tables;
-use crate::units::{Axes, Axis, DEGREES, Kind};
+use crate::units::DEGREES;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -50,6 +53,8 @@ pub struct CutterJob {
     pub name: String,
     /// Where it stands in the file.
     pub name_span: Option<Span>,
+    /// Its number, where the control wants one.
+    pub number: u32,
     /// The paths of the flutes, in order.
     pub flutes: Vec<Logarithmic>,
     /// The tolerance of the input, mm, and where it stands.
@@ -63,12 +68,18 @@ pub struct CutterJob {
 /// What the machine needs beside the path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Process {
-    /// mm/min along X Y Z.
+    /// mm/min or degrees/min along what the flutes say.
     pub feed: Option<f64>,
+    /// mm/min of the move to the work; none: what feed makes along X Y Z where the path begins.
+    pub approach_feed: Option<f64>,
+    /// mm/min back to the start of a path; none: rapid traverse.
+    pub return_feed: Option<f64>,
     /// Which axis goes where, absolute and in clear air.
     pub retract: Option<(usize, f64)>,
     /// rev/min.
     pub spindle: Option<f64>,
+    /// Whether the coolant flows.
+    pub coolant: bool,
     /// The tool's number.
     pub tool: u32,
     /// Rough passes before the finishing one.
@@ -77,6 +88,8 @@ pub struct Process {
     pub spark_out: u32,
     /// In which order flutes and passes are taken.
     pub order: Order,
+    /// A parameter that shifts all paths: its axis and its value, mm.
+    pub correction: Option<(usize, f64)>,
     /// Where the process stands in the file, or the whole of it.
     pub span: Span,
 }
@@ -200,6 +213,15 @@ impl Reader {
         {
             self.error("name-characters", "name must be 1 to 64 printable ASCII characters", spanned.span());
         }
+        let number = match &file.number {
+            None => 1,
+            Some(number) => {
+                if !(1..=9999).contains(number.get_ref()) {
+                    self.error("number-range", "number is 1 to 9999", number.span());
+                }
+                u32::try_from(*number.get_ref()).unwrap_or(1)
+            }
+        };
         let interpolation = file.interpolation.unwrap_or_default();
         let method = self.word(
             "method",
@@ -218,6 +240,8 @@ impl Reader {
             .as_ref()
             .map(|value| self.number("dl", value, "step-range", "must be greater than zero", |x| 0.0 < x));
         let (curve, flute_indices) = self.cutter(&cutter)?;
+        let travel = self.travel(file.process.as_ref().map(Spanned::get_ref));
+        let curve = self.extended(curve, &travel, file.process.as_ref())?;
         let overrun = interpolation.overrun.unwrap_or(false);
         if overrun && method == Method::Direct {
             let span = interpolation.method.as_ref().map_or(0..0, Spanned::span);
@@ -238,14 +262,28 @@ impl Reader {
             };
             self.error(id, error.to_string(), spanned.span());
         }
+        let unknown_end = overrun
+            && (travel.back || file.process.as_ref().is_some_and(|p| p.get_ref().return_feed.is_some()));
+        if unknown_end {
+            let span = interpolation.method.as_ref().map_or(cutter.span(), Spanned::span);
+            let message = "where an overrun ends follows from its steps: it cannot be run back, nor returned from at feed";
+            self.error("overrun-travel", message, span);
+        }
         let process_span = file.process.as_ref().map_or(whole, |p| self.span(p.span()));
         let process = self.process(file.process.map(Spanned::into_inner), process_span);
         let flutes = flute_indices
             .into_iter()
-            .map(|index| Logarithmic { curve: curve.with_index(index), method, dl, overrun })
+            .map(|index| Logarithmic {
+                curve: curve.with_index(index),
+                method,
+                dl,
+                overrun,
+                back: travel.back,
+                along: travel.along,
+            })
             .collect();
         let name_span = file.name.as_ref().map(|name| self.span(name.span()));
-        Some(CutterJob { name, name_span, flutes, tolerance, process, span: cutter_span })
+        Some(CutterJob { name, name_span, number, flutes, tolerance, process, span: cutter_span })
     }
 
     /// The curve of the first flute and the index of each.
@@ -361,92 +399,6 @@ impl Reader {
             }
             (None, None) => vec![0.0],
         }
-    }
-
-    fn process(&mut self, table: Option<ProcessTable>, span: Span) -> Process {
-        let mut process = Process {
-            feed: None,
-            retract: None,
-            spindle: None,
-            tool: 1,
-            infeed: None,
-            spark_out: 0,
-            order: Order::Flute,
-            span,
-        };
-        let Some(table) = table else { return process };
-        process.infeed = table.infeed.as_ref().and_then(|infeed| self.infeed(infeed));
-        if let Some(spark_out) = &table.spark_out {
-            process.spark_out = self.passes("spark_out", spark_out, 0);
-        }
-        process.order =
-            self.word("order", table.order.as_ref(), &[("flute", Order::Flute), ("pass", Order::Pass)]);
-        let positive = |x: f64| 0.0 < x && x < 1.0e6;
-        let must = "must be greater than zero and below a million";
-        process.feed =
-            table.feed.as_ref().map(|value| self.number("feed", value, "feed-range", must, positive));
-        process.spindle = table
-            .spindle
-            .as_ref()
-            .map(|value| self.number("spindle", value, "spindle-range", must, positive));
-        if let Some(tool) = &table.tool {
-            match u32::try_from(*tool.get_ref()) {
-                Ok(number) if (1..=99_999_999).contains(&number) => process.tool = number,
-                _ => self.error("tool-range", "tool must be 1 to 99999999", tool.span()),
-            }
-        }
-        if let Some(retract) = &table.retract {
-            let RetractTable { axis, to } = retract.get_ref();
-            match (axis, to) {
-                (Some(axis), Some(to)) => {
-                    let found = Axis::new(axis.get_ref()).and_then(|name| Axes::xyza().index_of(name));
-                    let linear = found.filter(|i| Axes::xyza().kind(*i) == Kind::Linear);
-                    if linear.is_none() {
-                        self.error("retract-axis", "the retract axis is X, Y or Z", axis.span());
-                    }
-                    let to = self.number("to", to, "retract-range", "must lie within a million mm", |x| {
-                        x.abs() < 1.0e6
-                    });
-                    process.retract = linear.map(|axis| (axis, to));
-                }
-                _ => self.error(
-                    "retract-missing",
-                    "retract needs axis and to, as { axis = \"Z\", to = 50.0 }",
-                    retract.span(),
-                ),
-            }
-        }
-        process
-    }
-
-    fn infeed(&mut self, table: &Spanned<InfeedTable>) -> Option<Infeed> {
-        let InfeedTable { axis: Some(axis), step: Some(step), passes: Some(passes) } = table.get_ref() else {
-            self.error(
-                "infeed-incomplete",
-                "infeed needs axis, step and passes, as { axis = \"Y\", step = 0.2, passes = 3 }",
-                table.span(),
-            );
-            return None;
-        };
-        let index = Axis::new(axis.get_ref()).and_then(|name| Axes::xyza().index_of(name));
-        let index = index.filter(|i| *i == 1 || *i == 2);
-        if index.is_none() {
-            self.error("infeed-axis", "the infeed axis is Y or Z: X runs along the cutter", axis.span());
-        }
-        let holds = |x: f64| x != 0.0 && x.abs() < 1000.0;
-        let step =
-            self.number("step", step, "infeed-range", "must lie within 1000 mm and not be zero", holds);
-        let passes = self.passes("passes", passes, 1);
-        index.map(|axis| Infeed { axis, step, passes })
-    }
-
-    /// A count of passes.
-    fn passes(&mut self, key: &str, value: &Spanned<i64>, least: i64) -> u32 {
-        let n = *value.get_ref();
-        if !(least..=MAX_PASSES).contains(&n) {
-            self.error("passes-range", format!("{key} must be {least} to {MAX_PASSES}"), value.span());
-        }
-        u32::try_from(n).unwrap_or(0)
     }
 }
 

@@ -53,6 +53,15 @@ impl Bezier {
         &self.points[..=self.degree]
     }
 
+    /// The same piece from its end to its start.
+    #[must_use]
+    pub fn reversed(&self) -> Bezier {
+        let mut piece = *self;
+        piece.points[..=self.degree].reverse();
+        piece.weights[..=self.degree].reverse();
+        piece
+    }
+
     /// Whether all weights are equal, so that the denominator can be left out.
     pub fn is_polynomial(&self) -> bool {
         self.weights[..=self.degree].iter().all(|w| *w == self.weights[0])

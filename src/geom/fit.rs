@@ -59,21 +59,21 @@ pub fn linear_in_x(curve: &LogCurve, degree: usize, tolerance: f64) -> Result<Ve
     }
 }
 
-/// X of the points of a polyline on the curve, nowhere farther than `tolerance` mm from it at the surface; from 0 to
-/// the end, both included.
+/// X of the points of a polyline on the curve, nowhere farther than `tolerance` mm from it at the surface; from start to
+/// end, both included.
 ///
 /// # Errors
 /// The tolerance is out of reach.
 pub fn chords(curve: &LogCurve, tolerance: f64) -> Result<Vec<f64>, FitError> {
     if curve.is_straight() {
-        return Ok(vec![0.0, curve.end()]);
+        return Ok(vec![curve.start(), curve.end()]);
     }
     let chord = |x0, x1| {
         let bound = log_chord(curve, (x0, curve.angle(x0)), (x1, curve.angle(x1)));
         Some((bound, [x0, x1]))
     };
     let pieces = fewest_pieces(curve, tolerance, 2.0, chord)?;
-    Ok(std::iter::once(0.0).chain(pieces.into_iter().map(|[_, x1]| x1)).collect())
+    Ok(std::iter::once(curve.start()).chain(pieces.into_iter().map(|[_, x1]| x1)).collect())
 }
 
 fn fewest(

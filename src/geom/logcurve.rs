@@ -85,7 +85,22 @@ pub enum CutterError {
     },
 }
 
-/// A curve A(X) with Y and Z, from X = 0 to [`LogCurve::end`].
+/// What is counted of a path: what a feed is a speed of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// mm along X Y Z.
+    Path,
+    /// mm along the cutting edge: X Y Z and the arc at the cutter's surface.
+    Edge,
+    /// mm along X.
+    X,
+    /// Degrees of A.
+    A,
+    /// The path of X Y Z and A together, a degree counted as a millimetre.
+    PathAndDegrees,
+}
+
+/// A curve A(X) with Y and Z, from X = [`LogCurve::start`] to [`LogCurve::end`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogCurve {
     /// The angle at X = 0, degrees.
@@ -93,6 +108,8 @@ pub struct LogCurve {
     /// How far the whole path is shifted in Y and Z, mm: a rough pass leaves stock.
     pub shift: [f64; 2],
     cutter: Cutter,
+    /// Where it starts and ends in X, mm.
+    range: [f64; 2],
     /// k = 2 tan S / D1, with the sign of the hand, rad/mm.
     k: f64,
     /// b = 2 tan C / D1, 1/mm.
@@ -141,7 +158,20 @@ impl LogCurve {
             Law::ConstantLead => 0.0,
         };
         let k = turn * 2.0 * tan(s / DEGREES) / d1;
-        Ok(LogCurve { index, shift: [0.0; 2], cutter, k, b, beta, tan_c, z_slope: tan_c * sin(r / DEGREES) })
+        let (range, z_slope) = ([0.0, length], tan_c * sin(r / DEGREES));
+        Ok(LogCurve { index, shift: [0.0; 2], cutter, range, k, b, beta, tan_c, z_slope })
+    }
+
+    /// The same curve between two other X, where `from` < `to`: extended beyond its cutter, or a part of it.
+    ///
+    /// # Errors
+    /// The cutter comes to a point between them.
+    pub fn with_range(&self, from: f64, to: f64) -> Result<LogCurve, CutterError> {
+        // 1 + bX is linear, so that it is least at an end.
+        if (1.0 + self.b * from).min(1.0 + self.b * to) <= 0.0 {
+            return Err(CutterError::Vanishes { at: -1.0 / self.b });
+        }
+        Ok(LogCurve { range: [from, to], ..*self })
     }
 
     /// The cutter that this is a flute of.
@@ -149,9 +179,14 @@ impl LogCurve {
         &self.cutter
     }
 
+    /// The least X, mm.
+    pub fn start(&self) -> f64 {
+        self.range[0]
+    }
+
     /// The greatest X, mm.
     pub fn end(&self) -> f64 {
-        self.cutter.length
+        self.range[1]
     }
 
     /// The same curve on a flute indexed by `index` degrees.
@@ -218,9 +253,9 @@ impl LogCurve {
         self.radius(x).max(0.05 * self.max_radius())
     }
 
-    /// The greatest radius between X = 0 and the end, mm.
+    /// The greatest radius between start and end, mm.
     pub fn max_radius(&self) -> f64 {
-        self.radius(0.0).max(self.radius(self.end()))
+        self.radius(self.start()).max(self.radius(self.end()))
     }
 
     /// X Y Z in mm and A in degrees, A given in radians without the index.
@@ -239,19 +274,27 @@ impl LogCurve {
         (1.0 + self.tan_c * self.tan_c + self.z_slope * self.z_slope).sqrt()
     }
 
-    /// The path's length where a degree of A counts as a millimetre: ∫ √(c² + (180/π · dA/dX)²) dX, c =
-    /// [`LogCurve::length_per_x`], by Simpson's rule on 128 intervals equal in ln q. The integrand is smooth and changes by
-    /// a few percent an interval, so the rule is right to some 1e-8.
-    pub fn length_with_degrees(&self) -> f64 {
+    /// How much of a measure passes per mm of X.
+    pub fn rate(&self, measure: Measure, x: f64) -> f64 {
         let c = self.length_per_x();
-        let speed = |x: f64| {
-            let a = self.slope(x) * DEGREES;
-            (c * c + a * a).sqrt()
-        };
+        let beside = |a: f64| (c * c + a * a).sqrt();
+        match measure {
+            Measure::Path => c,
+            Measure::Edge => beside(self.radius(x) * self.slope(x)),
+            Measure::X => 1.0,
+            Measure::A => (self.slope(x) * DEGREES).abs(),
+            Measure::PathAndDegrees => beside(self.slope(x) * DEGREES),
+        }
+    }
+
+    /// How much of a measure passes from start to end: ∫ rate dX by Simpson's rule on 128 intervals equal in ln q. The
+    /// integrand is smooth and changes by a few percent an interval, so the rule is right to some 1e-8.
+    pub fn amount(&self, measure: Measure) -> f64 {
+        let rate = |x: f64| self.rate(measure, x);
         let breaks: Vec<f64> = self.breaks(128, 1000.0).collect();
         breaks
             .windows(2)
-            .map(|w| (w[1] - w[0]) / 6.0 * (speed(w[0]) + 4.0 * speed(0.5 * (w[0] + w[1])) + speed(w[1])))
+            .map(|w| (w[1] - w[0]) / 6.0 * (rate(w[0]) + 4.0 * rate(0.5 * (w[0] + w[1])) + rate(w[1])))
             .sum()
     }
 
@@ -265,25 +308,27 @@ impl LogCurve {
         (run * speed, run * slope)
     }
 
-    /// Points 0 = x₀ < … < xₙ = end that share a fit of order `order` out evenly.
+    /// Points start = x₀ < … < xₙ = end that share a fit of order `order` out evenly.
     ///
     /// With q = 1 + βX the curve looks alike between q and ρq for every q: pieces of equal ratio have equal error in
     /// A. At the surface it grows with R ∝ q, so an error ∝ hᵐ is the same in every piece when the joints are equally
     /// spaced in q^(1/m).
     pub fn breaks(&self, n: usize, order: f64) -> impl Iterator<Item = f64> + use<> {
-        let (beta, end) = (self.beta, self.end());
-        let last = ln_1p(beta * end) / order; // ln of q^(1/m) at the end
+        let (beta, start, end) = (self.beta, self.start(), self.end());
+        // Counted from the start, q/q₀ = 1 + β′(X − x₀) with β′ = β/q₀.
+        let (beta, length) = (beta / (1.0 + beta * start), end - start);
+        let last = ln_1p(beta * length) / order; // ln of (q/q₀)^(1/m) at the end
         let reach = exp_m1(last);
         (0..=n).map(move |i| {
             let share = i as f64 / n as f64;
             if i == 0 {
-                0.0
+                start
             } else if i == n {
                 end
             } else if reach == 0.0 {
-                share * end
+                start + share * length
             } else {
-                exp_m1(order * ln_1p(share * reach)) / beta
+                start + exp_m1(order * ln_1p(share * reach)) / beta
             }
         })
     }
@@ -360,13 +405,13 @@ pub(crate) mod tests {
         let arsinh = |x: f64| ln_1p(x + (1.0 + x * x).sqrt() - 1.0);
         let whole = |q: f64| ((c * q * c * q + k * k).sqrt() - k * arsinh(k / (c * q))) / b;
         assert_relative_eq!(
-            curve.length_with_degrees(),
+            curve.amount(Measure::PathAndDegrees),
             whole(1.0 + 30.0 * b) - whole(1.0),
             max_relative = 1e-8
         );
         let straight = LogCurve::new(Cutter { s: 0.0, ..paper() }, 0.0).unwrap();
         assert_relative_eq!(
-            straight.length_with_degrees(),
+            straight.amount(Measure::PathAndDegrees),
             30.0 * straight.length_per_x(),
             max_relative = 1e-12
         );

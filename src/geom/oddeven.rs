@@ -63,7 +63,7 @@ pub struct OddEven {
 }
 
 impl OddEven {
-    /// Steps of length `dl` along `curve`, from X = 0.
+    /// Steps of length `dl` along `curve`, from its start.
     ///
     /// # Errors
     /// A step that is not positive, too large for the formulas, or so small that the points are beyond counting.
@@ -73,7 +73,7 @@ impl OddEven {
         }
         // w = β Δl / h is greatest where q is least. An odd step may still be made there, one Δl beyond the end
         // under overrun; q is then less by at most |w| q.
-        let (q0, q1) = (1.0, 1.0 + curve.beta() * curve.end());
+        let (q0, q1) = (1.0 + curve.beta() * curve.start(), 1.0 + curve.beta() * curve.end());
         let q = f64::min(q0, q1);
         let h = (q * q + curve.k() * curve.k()).sqrt();
         let limit = if curve.beta() == 0.0 { f64::INFINITY } else { 0.375 * h / curve.beta().abs() };
@@ -84,7 +84,8 @@ impl OddEven {
         if MAX_POINTS < points {
             return Err(StepError::TooManyPoints { points });
         }
-        Ok(OddEven { curve, dl, overrun, x: 0.0, a: 0.0, even: None, done: false })
+        let (x, a) = (curve.start(), curve.angle(curve.start()));
+        Ok(OddEven { curve, dl, overrun, x, a, even: None, done: false })
     }
 
     /// Not fewer points than there will be.
@@ -110,8 +111,8 @@ impl OddEven {
 
 /// The arc length ∫√(1 + A′²) dX in the mixed measure, from above, in steps.
 fn most_points(curve: &LogCurve, dl: f64) -> f64 {
-    let slope = curve.slope(0.0).abs().max(curve.slope(curve.end()).abs());
-    curve.end() * (1.0 + slope * slope).sqrt() / dl
+    let slope = curve.slope(curve.start()).abs().max(curve.slope(curve.end()).abs());
+    (curve.end() - curve.start()) * (1.0 + slope * slope).sqrt() / dl
 }
 
 impl Iterator for OddEven {
@@ -149,7 +150,7 @@ impl Iterator for OddEven {
 
 /// The bound on the distance between the polyline through the steps and the curve.
 pub fn polyline_deviation(curve: &LogCurve, steps: OddEven) -> Bound {
-    let mut from = (0.0, 0.0);
+    let mut from = (curve.start(), curve.angle(curve.start()));
     let mut bound = Bound::ZERO;
     for to in steps {
         bound = bound.max(log_chord(curve, from, to));
@@ -179,10 +180,10 @@ pub fn largest_step(curve: &LogCurve, tolerance: f64, most: f64, overrun: bool) 
     // The greatest ½|kβ| q/(q² + k²) · D1/2 over the curve, times Δl², is about the error at the surface: q/(q² + k²)
     // is greatest at q = |k| or at an end.
     let (k, beta) = (curve.k(), curve.beta());
-    let q_end = 1.0 + beta * curve.end();
+    let (q_start, q_end) = (1.0 + beta * curve.start(), 1.0 + beta * curve.end());
     let share = |q: f64| q / (q * q + k * k);
-    let mut worst = share(1.0).max(share(q_end));
-    if 1.0f64.min(q_end) < k.abs() && k.abs() < 1.0f64.max(q_end) {
+    let mut worst = share(q_start).max(share(q_end));
+    if q_start.min(q_end) < k.abs() && k.abs() < q_start.max(q_end) {
         worst = worst.max(share(k.abs()));
     }
     let guess = (tolerance / (0.25 * (k * beta).abs() * worst * curve.cutter().d1)).sqrt();

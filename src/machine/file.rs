@@ -1,14 +1,14 @@
 //! Machine files as text: keys, values, and what is wrong with them.
 
-use super::keys::{AxesFile, AxisFile, DigitsFile, File, KEYS, SplineFile};
-use super::template::Template;
-use super::{AxisLimits, BUILT_IN, Digits, Frame, Machine, RotaryFeed, Spline, Text};
+mod parts;
+
+use super::keys::{AxesFile, File, KEYS};
+use super::{BUILT_IN, Machine, RotaryFeed};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::{self, Form};
 use crate::source::{SourceId, Span};
 use crate::tables::{self, nearest};
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
-use std::collections::BTreeMap;
 use toml::Spanned;
 
 /// Reads a machine file.
@@ -116,59 +116,33 @@ impl Reader {
             );
             self.diagnostics.push(Diagnostic::error("digits-range", message));
         }
-        let text_file = file.text.unwrap_or_default();
-        let text = Text {
-            point_always: self.or(
-                text_file.point_always,
-                base.map(|b| b.text.point_always),
-                "text.point_always",
-            )?,
-            sign_always: self.or(
-                text_file.sign_always,
-                base.map(|b| b.text.sign_always),
-                "text.sign_always",
-            )?,
-            number_start: self.or(
-                text_file.number_start,
-                base.map(|b| b.text.number_start),
-                "text.number_start",
-            )?,
-            number_step: self.or(
-                text_file.number_step,
-                base.map(|b| b.text.number_step),
-                "text.number_step",
-            )?,
-            extension: self.or(
-                text_file.extension,
-                base.map(|b| b.text.extension.clone()),
-                "text.extension",
-            )?,
-        };
-        let rotary_feed = match file.feed.and_then(|feed| feed.rotary) {
+        let text = self.text(file.text.unwrap_or_default(), base.map(|b| &b.text))?;
+        let feed = file.feed.unwrap_or_default();
+        let rotary_feed = match feed.rotary {
             None => self.or(None, base.map(|b| b.rotary_feed), "feed.rotary")?,
             Some(word) => match word.get_ref().as_str() {
                 "free" => RotaryFeed::Free,
                 "degrees-as-mm" => RotaryFeed::DegreesAsMm,
+                "surface" => RotaryFeed::Surface,
                 _ => {
-                    self.error("feed-rotary", "rotary is \"free\" or \"degrees-as-mm\"", word.span());
+                    let message = "rotary is \"free\", \"degrees-as-mm\" or \"surface\"";
+                    self.error("feed-rotary", message, word.span());
                     RotaryFeed::Free
                 }
             },
         };
+        if let Some(error) = &feed.error
+            && !(0.001..=10.0).contains(error.get_ref())
+        {
+            self.error("feed-error", "error is a share from 0.001 to 10: 0.05 is 5 percent", error.span());
+        }
+        let feed_error =
+            self.or(feed.error.map(Spanned::into_inner), base.map(|b| b.feed_error), "feed.error")?;
+        let feed_parameter = self.or(feed.parameter, base.map(|b| b.feed_parameter), "feed.parameter")?;
+        let parameters = self.parameters(&file.parameter.unwrap_or_default(), base.map(|b| b.parameters))?;
         let spline = self.spline(file.spline.unwrap_or_default(), base)?;
-        let program = file.program.unwrap_or_default();
-        let frame = Frame {
-            header: self.lines(program.header, base.map(|b| &b.frame.header), "header", &["name"])?,
-            tool: self.lines(program.tool, base.map(|b| &b.frame.tool), "tool", &["tool"])?,
-            spindle: self.lines(program.spindle, base.map(|b| &b.frame.spindle), "spindle", &["rpm"])?,
-            tool_spindle: self.lines(
-                program.tool_spindle,
-                base.map(|b| &b.frame.tool_spindle),
-                "tool_spindle",
-                &["tool", "rpm"],
-            )?,
-            footer: self.lines(program.footer, base.map(|b| &b.frame.footer), "footer", &["name"])?,
-        };
+        let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame))?;
+        let cutter_axes = self.cutter_axes(axes_file.cutter.as_ref(), base)?;
         Some(Machine {
             name: self.or(file.name, base.map(|b| b.name.clone()), "name")?,
             about: self.or(file.about, base.map(|b| b.about.clone()), "about")?,
@@ -180,10 +154,14 @@ impl Reader {
                 "tolerance",
             )?,
             axes: axes?,
+            cutter_axes,
             limits: self.limits(file.axis.unwrap_or_default(), axes.as_ref(), base),
             digits: digits?,
             text,
             rotary_feed,
+            feed_error,
+            feed_parameter,
+            parameters,
             spline,
             frame,
         })
@@ -222,154 +200,22 @@ impl Reader {
         axes
     }
 
-    /// What the file says of each axis, over what the machine below it says.
-    fn limits(
+    /// X, Y, Z and A of a cutter: by name, or as ever where nothing is said.
+    fn cutter_axes(
         &mut self,
-        file: BTreeMap<String, AxisFile>,
-        axes: Option<&Axes>,
+        names: Option<&Spanned<Vec<Spanned<String>>>>,
         base: Option<&Machine>,
-    ) -> BTreeMap<Axis, AxisLimits> {
-        let mut all = base.map(|b| b.limits.clone()).unwrap_or_default();
-        for (name, own) in file {
-            let axis = Axis::new(&name).filter(|axis| axes.is_none_or(|axes| axes.index_of(*axis).is_some()));
-            let Some(axis) = axis else {
-                let message = format!("[axis.{name}] speaks of an axis that the machine does not have");
-                self.diagnostics.push(Diagnostic::error("axis-unknown", message));
-                continue;
-            };
-            let limits = all.entry(axis).or_default();
-            if let Some(kind) = &own.kind {
-                match kind.get_ref().as_str() {
-                    "linear" => limits.modulo = false,
-                    "modulo" => limits.modulo = true,
-                    _ => self.error(
-                        "axis-kind",
-                        "kind is \"linear\" (it counts on) or \"modulo\"",
-                        kind.span(),
-                    ),
-                }
-            }
-            let mut number = |value: Option<Spanned<f64>>, into: &mut Option<f64>, positive: bool| {
-                if let Some(value) = value {
-                    let x = *value.get_ref();
-                    if !x.is_finite() || (positive && x <= 0.0) {
-                        self.error(
-                            "axis-limit",
-                            "a limit is a finite number, a speed greater than zero",
-                            value.span(),
-                        );
-                    }
-                    *into = Some(x);
-                }
-            };
-            number(own.min, &mut limits.min, false);
-            let max_span = own.max.as_ref().map(Spanned::span);
-            number(own.max, &mut limits.max, false);
-            number(own.max_speed, &mut limits.max_speed, true);
-            if let (Some(min), Some(max)) = (limits.min, limits.max)
-                && max <= min
-            {
-                self.error("axis-limit", "max must be greater than min", max_span.unwrap_or(0..0));
-            }
-        }
-        all
-    }
-
-    fn digits(&mut self, file: &DigitsFile, base: Option<Digits>) -> Option<Digits> {
-        // Nine decimals of a position up to 10⁵ are as many as a float holds.
-        for digits in [&file.linear, &file.rotary, &file.feed, &file.knot, &file.weight].into_iter().flatten()
-        {
-            if 9 < *digits.get_ref() {
-                self.error("digits-range", "at most 9 decimals", digits.span());
-            }
-        }
-        let own = |digits: &Option<Spanned<u8>>| digits.as_ref().map(|d| *d.get_ref());
-        Some(Digits {
-            linear: self.or(own(&file.linear), base.map(|b| b.linear), "digits.linear")?,
-            rotary: self.or(own(&file.rotary), base.map(|b| b.rotary), "digits.rotary")?,
-            feed: self.or(own(&file.feed), base.map(|b| b.feed), "digits.feed")?,
-            knot: self.or(own(&file.knot), base.map(|b| b.knot), "digits.knot")?,
-            weight: self.or(own(&file.weight), base.map(|b| b.weight), "digits.weight")?,
-        })
-    }
-
-    fn spline(&mut self, file: SplineFile, base: Option<&Machine>) -> Option<Spline> {
-        let base = base.map(|b| &b.spline);
-        let axes = match file.axes {
-            None => self.or(None, base.map(|b| b.axes.clone()), "spline.axes")?,
-            Some(names) => names.iter().map(|name| self.axis(name)).collect::<Option<Vec<Axis>>>()?,
+    ) -> Option<[Axis; 4]> {
+        let Some(names) = names else {
+            let usual = || [0, 1, 2, 3].map(|i| Axes::xyza().name(i));
+            return Some(base.map_or_else(usual, |b| b.cutter_axes));
         };
-        if let Some(degree) = &file.poly_degree
-            && !(3..=5).contains(degree.get_ref())
-        {
-            self.error("degree-range", "poly_degree is 3 to 5", degree.span());
+        let axes: Option<Vec<Axis>> = names.get_ref().iter().map(|name| self.axis(name)).collect();
+        let four: Option<[Axis; 4]> = axes?.try_into().ok();
+        if four.is_none() {
+            let message = "cutter names four axes: those that are X, Y, Z and A of a cutter";
+            self.error("cutter-axes", message, names.span());
         }
-        if let Some(blocks) = &file.bspline_min_blocks
-            && 1000 < *blocks.get_ref()
-        {
-            self.error("blocks-range", "bspline_min_blocks is at most 1000", blocks.span());
-        }
-        // Empty where a control has none.
-        for (word, known) in
-            [(&file.begin, ["", "BAUTO", "BNAT", "BTAN"]), (&file.end, ["", "EAUTO", "ENAT", "ETAN"])]
-        {
-            if let Some(word) = word
-                && !known.contains(&word.get_ref().as_str())
-            {
-                let message = format!("the end condition is {}", known[1..].join(" or "));
-                self.error("end-condition", message, word.span());
-            }
-        }
-        Some(Spline {
-            axes,
-            poly_degree: self.or(
-                file.poly_degree.map(Spanned::into_inner),
-                base.map(|b| b.poly_degree),
-                "spline.poly_degree",
-            )?,
-            shared_parameter: self.or(
-                file.shared_parameter,
-                base.map(|b| b.shared_parameter),
-                "spline.shared_parameter",
-            )?,
-            bspline_min_blocks: self.or(
-                file.bspline_min_blocks.map(Spanned::into_inner),
-                base.map(|b| b.bspline_min_blocks),
-                "spline.bspline_min_blocks",
-            )?,
-            begin: self.or(
-                file.begin.map(Spanned::into_inner),
-                base.map(|b| b.begin.clone()),
-                "spline.begin",
-            )?,
-            end: self.or(file.end.map(Spanned::into_inner), base.map(|b| b.end.clone()), "spline.end")?,
-        })
-    }
-
-    fn lines(
-        &mut self,
-        own: Option<Vec<Spanned<String>>>,
-        base: Option<&Vec<Template>>,
-        key: &str,
-        variables: &[&str],
-    ) -> Option<Vec<Template>> {
-        let Some(own) = own else { return self.or(None, base.cloned(), &format!("program.{key}")) };
-        let mut lines = Vec::new();
-        for line in own {
-            let template = Template(line.get_ref().clone());
-            let strange = template.variables().find(|v| !variables.contains(v)).map(str::to_owned);
-            if let Some(strange) = strange {
-                let message = format!(
-                    "`{{{strange}}}` cannot be filled in here; only {{{}}} can",
-                    variables.join("}, {")
-                );
-                self.error("template-variable", message, line.span());
-            }
-            if line.get_ref().is_empty() || !line.get_ref().bytes().all(|b| (32..127).contains(&b)) {
-                self.error("template-text", "a line of printable ASCII is needed", line.span());
-            }
-            lines.push(template);
-        }
-        Some(lines)
+        four
     }
 }

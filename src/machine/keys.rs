@@ -14,8 +14,21 @@ pub const KEYS: &[Key] = &[
     Key::value("dialect"),
     Key::value("motion"),
     Key::value("tolerance"),
-    Key::table("axes", &[Key::value("linear"), Key::value("rotary")]),
-    Key::each("axis", &[Key::value("kind"), Key::value("min"), Key::value("max"), Key::value("max_speed")]),
+    Key::table("axes", &[Key::value("linear"), Key::value("rotary"), Key::value("cutter")]),
+    Key::each(
+        "axis",
+        &[
+            Key::value("kind"),
+            Key::value("min"),
+            Key::value("max"),
+            Key::value("max_speed"),
+            Key::value("max_acceleration"),
+            Key::value("home"),
+            Key::value("digits"),
+            Key::value("sign"),
+            Key::value("moves"),
+        ],
+    ),
     Key::table(
         "digits",
         &[
@@ -31,12 +44,18 @@ pub const KEYS: &[Key] = &[
         &[
             Key::value("point_always"),
             Key::value("sign_always"),
+            Key::value("leading_zero"),
+            Key::value("spaces"),
             Key::value("number_start"),
             Key::value("number_step"),
+            Key::value("number_comments"),
+            Key::value("line_end"),
+            Key::value("comment_length"),
             Key::value("extension"),
         ],
     ),
-    Key::table("feed", &[Key::value("rotary")]),
+    Key::table("feed", &[Key::value("rotary"), Key::value("error"), Key::value("parameter")]),
+    Key::table("parameter", &[Key::value("first"), Key::value("last")]),
     Key::table(
         "spline",
         &[
@@ -52,10 +71,19 @@ pub const KEYS: &[Key] = &[
         "program",
         &[
             Key::value("header"),
+            Key::value("setup"),
+            Key::value("home"),
             Key::value("tool"),
             Key::value("spindle"),
             Key::value("tool_spindle"),
+            Key::value("coolant"),
+            Key::value("shift"),
             Key::value("footer"),
+            Key::value("subprograms"),
+            Key::value("call"),
+            Key::value("begin"),
+            Key::value("end"),
+            Key::value("close"),
         ],
     ),
 ];
@@ -90,6 +118,8 @@ pub(super) struct File {
     pub(super) text: Option<TextFile>,
     /// What F means.
     pub(super) feed: Option<FeedFile>,
+    /// Which parameters a program may use.
+    pub(super) parameter: Option<ParameterFile>,
     /// What its splines take.
     pub(super) spline: Option<SplineFile>,
     /// The lines round a program.
@@ -106,6 +136,9 @@ pub(super) struct AxesFile {
     /// Axes in degrees.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) rotary: Option<Spanned<Vec<Spanned<String>>>>,
+    /// Which of them are X, Y, Z and A of a cutter, in this order. Default X, Y, Z, A.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) cutter: Option<Spanned<Vec<Spanned<String>>>>,
 }
 
 /// What one axis can do.
@@ -124,6 +157,21 @@ pub(super) struct AxisFile {
     /// Greatest speed at feed, mm/min or degrees/min.
     #[schemars(with = "Option<f64>")]
     pub(super) max_speed: Option<Spanned<f64>>,
+    /// Greatest acceleration at feed, mm/s² or degrees/s².
+    #[schemars(with = "Option<f64>")]
+    pub(super) max_acceleration: Option<Spanned<f64>>,
+    /// Where it is clear in machine coordinates, mm: before the tool change and at the end. Without it no program goes there.
+    #[schemars(with = "Option<f64>")]
+    pub(super) home: Option<Spanned<f64>>,
+    /// Decimals of this axis, instead of those of its kind.
+    #[schemars(with = "Option<u8>")]
+    pub(super) digits: Option<Spanned<u8>>,
+    /// 1 (default), or -1 where the control counts the other way.
+    #[schemars(with = "Option<i64>", extend("enum" = [1, -1]))]
+    pub(super) sign: Option<Spanned<i64>>,
+    /// What moves with it: wheel (default) or work. It changes no number: programs say how the wheel moves relative to the work.
+    #[schemars(with = "Option<String>", extend("enum" = ["wheel", "work"]))]
+    pub(super) moves: Option<Spanned<String>>,
 }
 
 /// How many decimals an address takes, at most 9.
@@ -155,10 +203,22 @@ pub(super) struct TextFile {
     pub(super) point_always: Option<bool>,
     /// X+30 instead of X30.
     pub(super) sign_always: Option<bool>,
+    /// X0.5 instead of X.5.
+    pub(super) leading_zero: Option<bool>,
+    /// G1 X30 F200 instead of G1X30F200.
+    pub(super) spaces: Option<bool>,
     /// The first block number.
     pub(super) number_start: Option<u32>,
     /// What it grows by; 0 for no numbers.
     pub(super) number_step: Option<u32>,
+    /// Whether comments have block numbers too.
+    pub(super) number_comments: Option<bool>,
+    /// lf or crlf.
+    #[schemars(with = "Option<String>", extend("enum" = ["lf", "crlf"]))]
+    pub(super) line_end: Option<Spanned<String>>,
+    /// The most characters of a comment, 20 to 500; longer ones go on in another.
+    #[schemars(with = "Option<usize>")]
+    pub(super) comment_length: Option<Spanned<usize>>,
     /// The usual extension of a program file.
     pub(super) extension: Option<String>,
 }
@@ -167,9 +227,26 @@ pub(super) struct TextFile {
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FeedFile {
-    /// free: F is the speed of the linear axes and rotary ones go along; degrees-as-mm: a degree counts as a mm.
-    #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm"]))]
+    /// What F counts of rotary axes beside linear ones. free: nothing; degrees-as-mm: a degree as a mm; surface: mm at the cutter's surface.
+    #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm", "surface"]))]
     pub(super) rotary: Option<Spanned<String>>,
+    /// How far the speed may be from the one asked for inside a block, as a share; beyond it paths are cut into more blocks.
+    #[schemars(with = "Option<f64>")]
+    pub(super) error: Option<Spanned<f64>>,
+    /// Whether feeds are parameters, set at the head of the program.
+    pub(super) parameter: Option<bool>,
+}
+
+/// Which parameters a program may use: R of Sinumerik, Q of Heidenhain, # of Mazak.
+#[derive(Deserialize, JsonSchema, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ParameterFile {
+    /// The first.
+    #[schemars(with = "Option<u32>")]
+    pub(super) first: Option<Spanned<u32>>,
+    /// The last.
+    #[schemars(with = "Option<u32>")]
+    pub(super) last: Option<Spanned<u32>>,
 }
 
 /// What splines the machine takes.
@@ -199,9 +276,14 @@ pub(super) struct SplineFile {
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProgramFile {
-    /// Before the first step; {name}.
+    /// Before the first step; {name}, {number}, and {linear}: the linear axes, separated by commas.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) header: Option<Vec<Spanned<String>>>,
+    /// Whether comments behind the header say what to set up.
+    pub(super) setup: Option<bool>,
+    /// The retraction in machine coordinates before a tool change and at the end; {home}: the axis and its home.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) home: Option<Vec<Spanned<String>>>,
     /// A tool call; {tool}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tool: Option<Vec<Spanned<String>>>,
@@ -211,9 +293,29 @@ pub(super) struct ProgramFile {
     /// Tool and spindle in one, where a control wants them so; {tool}, {rpm}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tool_spindle: Option<Vec<Spanned<String>>>,
+    /// The coolant's start.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) coolant: Option<Vec<Spanned<String>>>,
+    /// A work offset; {words}: the axis words. A line with {i} stands once for each axis, {i} counting from 1.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) shift: Option<Vec<Spanned<String>>>,
     /// After the last step; {name}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) footer: Option<Vec<Spanned<String>>>,
+    /// Whether sections that are alike but for a work offset are written once and called.
+    pub(super) subprograms: Option<bool>,
+    /// The call of a subprogram; {label}.
+    #[schemars(with = "Option<String>")]
+    pub(super) call: Option<Spanned<String>>,
+    /// The first line of a subprogram; {label}. Subprograms stand behind the footer.
+    #[schemars(with = "Option<String>")]
+    pub(super) begin: Option<Spanned<String>>,
+    /// The last line of a subprogram; {label}.
+    #[schemars(with = "Option<String>")]
+    pub(super) end: Option<Spanned<String>>,
+    /// The last lines of the text, behind subprograms; {name}.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) close: Option<Vec<Spanned<String>>>,
 }
 
 /// The JSON Schema of a machine file.

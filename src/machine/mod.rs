@@ -7,15 +7,15 @@
 
 mod file;
 mod keys;
+mod parts;
 pub mod template;
 
+use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::{Dialect, Motion};
 use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
 pub use keys::{KEYS, schema};
-use std::collections::BTreeMap;
-use template::Template;
+pub use parts::{AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Parameters, RotaryFeed, Spline, Text};
 
 /// The machines that are built in, with their files.
 pub const BUILT_IN: &[(&str, &str)] = &[
@@ -28,119 +28,6 @@ pub const BUILT_IN: &[(&str, &str)] = &[
 /// The file of a built-in machine.
 pub fn built_in(name: &str) -> Option<&'static str> {
     BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
-}
-
-/// One machine.
-#[derive(Clone, Debug)]
-pub struct Machine {
-    /// Its name.
-    pub name: String,
-    /// What it is, in one line.
-    pub about: String,
-    /// How it is written to.
-    pub dialect: &'static Dialect,
-    /// The motion for cutting pieces; none for `auto`.
-    pub motion: Option<&'static Motion>,
-    /// mm, where neither the command line nor the input says.
-    pub tolerance: f64,
-    /// Its axes.
-    pub axes: Axes,
-    /// What each axis can do, where the file says.
-    pub limits: BTreeMap<Axis, AxisLimits>,
-    /// Decimals.
-    pub digits: Digits,
-    /// Spelling.
-    pub text: Text,
-    /// How F counts rotary axes.
-    pub rotary_feed: RotaryFeed,
-    /// What its splines take.
-    pub spline: Spline,
-    /// The lines round a program.
-    pub frame: Frame,
-}
-
-/// How F counts rotary axes in a block that moves linear ones too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RotaryFeed {
-    /// F is the speed along the path of the linear axes; rotary ones go along.
-    Free,
-    /// F is the speed along the path of all axes, a degree counted as a millimetre.
-    DegreesAsMm,
-}
-
-/// What one axis can do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AxisLimits {
-    /// Whether a rotary axis wraps at 360° instead of counting on.
-    pub modulo: bool,
-    /// The least position, mm or degrees.
-    pub min: Option<f64>,
-    /// The greatest position, mm or degrees.
-    pub max: Option<f64>,
-    /// The greatest speed at feed, mm/min or degrees/min.
-    pub max_speed: Option<f64>,
-}
-
-/// How many decimals an address takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Digits {
-    /// Linear axes.
-    pub linear: u8,
-    /// Rotary axes.
-    pub rotary: u8,
-    /// Feed and spindle speed.
-    pub feed: u8,
-    /// PL of BSPLINE, K of G06.2.
-    pub knot: u8,
-    /// PW, R.
-    pub weight: u8,
-}
-
-/// How text is spelled.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Text {
-    /// `X30.` instead of `X30`.
-    pub point_always: bool,
-    /// `X+30` instead of `X30`.
-    pub sign_always: bool,
-    /// The first block number.
-    pub number_start: u32,
-    /// What it grows by; 0 for none at all.
-    pub number_step: u32,
-    /// The usual extension of a program file.
-    pub extension: String,
-}
-
-/// What splines a machine takes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Spline {
-    /// Which axes spline blocks may move.
-    pub axes: Vec<Axis>,
-    /// The greatest degree of polynomial blocks.
-    pub poly_degree: usize,
-    /// Whether all axes of a spline block share one parameter on the control.
-    pub shared_parameter: bool,
-    /// The fewest blocks a B-spline may have.
-    pub bspline_min_blocks: usize,
-    /// The word for the start condition of through-point splines.
-    pub begin: String,
-    /// The word for their end condition.
-    pub end: String,
-}
-
-/// The lines round a program.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
-    /// Before the first step.
-    pub header: Vec<Template>,
-    /// A tool call.
-    pub tool: Vec<Template>,
-    /// The spindle's start.
-    pub spindle: Vec<Template>,
-    /// A tool call and the spindle's start in one, where a control wants them so; empty: one after the other.
-    pub tool_spindle: Vec<Template>,
-    /// After the last step.
-    pub footer: Vec<Template>,
 }
 
 impl Machine {
@@ -166,11 +53,12 @@ impl Machine {
     /// The decimals of each of the program's axes.
     pub fn axis_digits(&self) -> [u8; MAX_AXES] {
         let mut digits = [0; MAX_AXES];
-        for (i, (_, kind)) in self.axes.as_slice().iter().enumerate() {
-            digits[i] = match kind {
+        for (i, (axis, kind)) in self.axes.as_slice().iter().enumerate() {
+            let usual = match kind {
                 Kind::Linear | Kind::Direction => self.digits.linear,
                 Kind::Rotary => self.digits.rotary,
             };
+            digits[i] = self.limits(*axis).digits.unwrap_or(usual);
         }
         digits
     }
@@ -197,6 +85,32 @@ impl Machine {
             }
         }
         Ok(Machine { axes: *axes, ..self.clone() })
+    }
+
+    /// Which of the program's axes the control counts the other way.
+    pub fn reversed(&self) -> [bool; MAX_AXES] {
+        let mut reversed = [false; MAX_AXES];
+        for (i, (axis, _)) in self.axes.as_slice().iter().enumerate() {
+            reversed[i] = self.limits(*axis).reversed;
+        }
+        reversed
+    }
+
+    /// Where axis `i` is clear in machine coordinates, in its decimals.
+    pub fn home(&self, i: usize) -> Option<Decimal> {
+        let home = self.limits(self.axes.name(i)).home?;
+        Decimal::round(home, self.axis_digits()[i])
+    }
+
+    /// Whether programs say their number.
+    pub fn has_number(&self) -> bool {
+        self.frame.header.iter().any(|line| line.variables().any(|variable| variable == "number"))
+    }
+
+    /// The names of the linear axes, separated by commas.
+    pub fn linear_names(&self) -> String {
+        let linear = self.axes.as_slice().iter().filter(|(_, kind)| *kind == Kind::Linear);
+        linear.map(|(axis, _)| axis.as_str()).collect::<Vec<_>>().join(",")
     }
 
     /// The axes that spline blocks may not move, of those given.

@@ -21,6 +21,11 @@ impl Template {
     ///
     /// A value is what stands up to the next fixed text; it is not empty.
     pub fn matched<'l>(&self, line: &'l str) -> Option<Vec<(String, &'l str)>> {
+        // Most lines are ruled out by their end.
+        let fixed = self.0.rfind('}').map_or(0, |at| at + 1);
+        if !line.ends_with(&self.0[fixed..]) {
+            return None;
+        }
         let mut values = Vec::new();
         let (mut template, mut line) = (self.0.as_str(), line);
         while let Some(open) = template.find('{') {

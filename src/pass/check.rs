@@ -4,10 +4,10 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Dialect, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written};
+use crate::ir::{Decimals, PolynomialBlock, Units, Written};
 use crate::machine::Machine;
-use crate::pass::limits;
-use crate::units::{Axis, DEGREES, Kind, MAX_AXES, Position};
+use crate::pass::{limits, range};
+use crate::units::{Axis, DEGREES, MAX_AXES, Position};
 
 /// A program in decimals that one machine takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,12 +23,6 @@ impl Legal {
 /// The greatest change of direction at which a control neither stops nor slows, degrees (Heidenhain's figure).
 const SMOOTH_JOINT: f64 = 0.1;
 
-/// The greatest coordinate, mm or degrees, of the narrowest control (Heidenhain: ±99 999.9999).
-const GREATEST: f64 = 99_999.999_9;
-
-/// How often a piece is halved before its control points are taken for its range: the error is below a 4000th.
-const RANGE_HALVINGS: u32 = 6;
-
 /// Checks a program against a machine.
 ///
 /// # Errors
@@ -39,40 +33,29 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
     if let Some(diagnostic) = name(&decimals.program.name, machine) {
         found.push(diagnostic);
     }
-    let mut reach = Reach::new();
     let mut worst_joint = 0.0f64;
     let mut coefficient_digits = 0;
     let mut splines_move: Vec<Axis> = Vec::new();
     for located in &decimals.program.steps {
-        match &located.step {
-            Step::Rapid(targets) => {
-                for (axis, to) in targets {
-                    reach.take(*axis, to.to_f64());
-                }
-            }
-            Step::Cut(cut) => {
-                match form(&decimals, &cut.curve, machine.dialect) {
-                    Ok(needed) => coefficient_digits = coefficient_digits.max(needed),
-                    Err(refused) => found.push(refused.at(located.span, "")),
-                }
-                reach.curve(&decimals, &cut.curve);
-                let moved: Vec<usize> = match &cut.curve {
-                    Written::Lines(_) => Vec::new(),
-                    Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => moving(&cut.curve),
-                };
-                for axis in moved {
-                    let name = machine.axes.name(axis);
-                    if !machine.spline.axes.contains(&name) && !splines_move.contains(&name) {
-                        splines_move.push(name);
-                    }
-                }
-                worst_joint = worst_joint.max(joint_angle(&decimals, &cut.curve));
-            }
-            Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) => {}
+        let Some(cut) = located.step.cut() else { continue };
+        match form(&decimals, &cut.curve, machine.dialect) {
+            Ok(needed) => coefficient_digits = coefficient_digits.max(needed),
+            Err(refused) => found.push(refused.at(located.span, "")),
         }
+        let moved: Vec<usize> = match &cut.curve {
+            Written::Lines(_) => Vec::new(),
+            Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => moving(&cut.curve),
+        };
+        for axis in moved {
+            let name = machine.axes.name(axis);
+            if !machine.spline.axes.contains(&name) && !splines_move.contains(&name) {
+                splines_move.push(name);
+            }
+        }
+        worst_joint = worst_joint.max(joint_angle(&decimals, &cut.curve));
     }
-    reach.report(&decimals, machine, &mut found);
-    found.extend(limits::speeds(&decimals, machine));
+    found.extend(range::positions(&decimals, machine));
+    found.extend(limits::check(&decimals, machine));
     if !splines_move.is_empty() {
         let names: Vec<&str> = splines_move.iter().map(Axis::as_str).collect();
         let names = names.join(", ");
@@ -193,93 +176,6 @@ pub fn closing_coefficients(
     let k1 =
         Decimal::new(start, digits).minus(Decimal::new(block.end[axis], digits))?.minus(k2)?.minus(k3)?;
     Some([k3, k2, k1])
-}
-
-/// The least and the greatest of every axis.
-struct Reach([(f64, f64); MAX_AXES]);
-
-impl Reach {
-    fn new() -> Reach {
-        Reach([(f64::INFINITY, f64::NEG_INFINITY); MAX_AXES])
-    }
-
-    fn take(&mut self, axis: usize, x: f64) {
-        self.0[axis] = (self.0[axis].0.min(x), self.0[axis].1.max(x));
-    }
-
-    fn curve(&mut self, decimals: &Decimals, curve: &Written) {
-        let axes = decimals.program.axes.count();
-        let mut point = |units: &Units| {
-            let position = decimals.position(units);
-            for (axis, x) in position.iter().enumerate().take(axes) {
-                self.take(axis, *x);
-            }
-        };
-        match curve {
-            Written::Lines(line) | Written::Through(_, line) => {
-                let (mut low, mut high) = (line.start, line.start);
-                for chunk in line.units.chunks_exact(line.stride) {
-                    for (i, units) in chunk.iter().enumerate() {
-                        low[i] = low[i].min(*units);
-                        high[i] = high[i].max(*units);
-                    }
-                }
-                point(&low);
-                point(&high);
-            }
-            Written::Polynomial(_) | Written::Nurbs(_) => limits::each_piece(decimals, curve, |piece| {
-                for axis in 0..axes {
-                    // A rational piece lies within its control points; a polynomial one is looked at more closely.
-                    let (low, high) = if piece.is_polynomial() {
-                        piece.numerator(axis).range(RANGE_HALVINGS)
-                    } else {
-                        let all = piece.control_points().iter().map(|p| p[axis]);
-                        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                            (low.min(x), high.max(x))
-                        })
-                    };
-                    self.take(axis, low);
-                    self.take(axis, high);
-                }
-            }),
-        }
-    }
-
-    fn report(&self, decimals: &Decimals, machine: &Machine, found: &mut Diagnostics) {
-        for (i, (axis, kind)) in decimals.program.axes.as_slice().iter().enumerate() {
-            let (low, high) = self.0[i];
-            if low < -GREATEST || GREATEST < high {
-                let far = if low < -GREATEST { low } else { high };
-                found.push(Diagnostic::error(
-                    "position-range",
-                    format!("{axis} goes to {far}, beyond ±99999.9999"),
-                ));
-            }
-            let limits = machine.limits(*axis);
-            let (least, most) =
-                (limits.min.unwrap_or(f64::NEG_INFINITY), limits.max.unwrap_or(f64::INFINITY));
-            if low < least || most < high {
-                let message = format!(
-                    "{axis} goes from {low:.4} to {high:.4}, beyond the {least} to {most} of machine `{}`",
-                    machine.name
-                );
-                found.push(Diagnostic::refusal("axis-range", message));
-            }
-            if *kind == Kind::Rotary && (low < 0.0 || 360.0 < high) {
-                let range = format!("{axis} runs from {low:.3} to {high:.3} degrees, outside 0 to 360");
-                found.push(if limits.modulo {
-                    Diagnostic::refusal("rotary-wraps", format!("{range}, and machine `{}` wraps there", machine.name))
-                        .hint(format!("set [axis.{axis}] kind = \"linear\" if the axis counts on"))
-                        .hint("or shift the flutes with `index`, so that each stays within 0 to 360")
-                } else {
-                    Diagnostic::warning("rotary-range", range).hint(format!(
-                        "machine `{}` says [axis.{axis}] kind = \"linear\": it counts on and never takes the short way round",
-                        machine.name
-                    ))
-                });
-            }
-        }
-    }
 }
 
 /// The axes that a curve moves.

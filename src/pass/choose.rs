@@ -3,10 +3,10 @@
 //! since only the control knows their shape, and a path that is made of lines anyway is written as lines: a straight
 //! one, and odd-even steps where the input asks for them.
 
-use super::{convert, interpolate, settle};
+use super::{convert, interpolate, place, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Form, Motion};
-use crate::ir::{Curve, Cut, Intent, Method, Program, Role, Step};
+use crate::ir::{Curve, Cut, Intent, Method, Program, Role};
 use crate::machine::Machine;
 use crate::units::Axis;
 
@@ -26,12 +26,13 @@ pub fn choose(
         Curve::Lines(_) => true,
         Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
     });
+    let winds = place::winds(intent, machine);
     let mut best: Option<(usize, &'static Motion)> = None;
     let mut errors = Diagnostics::new();
     for motion in machine.dialect.motions {
         let allowed = match motion.form {
             Form::Lines => true,
-            Form::Polynomial { .. } | Form::Nurbs => blocked.is_empty() && !straight,
+            Form::Polynomial { .. } | Form::Nurbs => blocked.is_empty() && !straight && winds.is_none(),
             Form::Through(_) => false,
         };
         if !allowed {
@@ -44,6 +45,16 @@ pub fn choose(
         }
     }
     let Some((_, motion)) = best else { return Err(errors) };
+    if let Some(axis) = winds.filter(|_| !straight && blocked.is_empty()) {
+        let message = format!(
+            "written as lines: {axis} turns by more than 360 degrees, and on machine `{}` it wraps there",
+            machine.name
+        );
+        warnings.push(
+            Diagnostic::warning("spline-wraps", message)
+                .hint(format!("set [axis.{axis}] kind = \"linear\" if the axis counts on")),
+        );
+    }
     if !blocked.is_empty() && !straight {
         let names: Vec<&str> = blocked.iter().map(Axis::as_str).collect();
         let names = names.join(", ");
@@ -63,10 +74,8 @@ pub fn choose(
 }
 
 fn paths(intent: &Intent) -> impl Iterator<Item = &Curve> {
-    intent.program.steps.iter().filter_map(|located| match &located.step {
-        Step::Cut(Cut { role: Role::Path, curve, .. }) => Some(curve),
-        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_) => None,
-    })
+    let cuts = intent.program.steps.iter().filter_map(|located| located.step.cut());
+    cuts.filter(|cut| cut.role == Role::Path).map(|cut| &cut.curve)
 }
 
 /// The axes that paths move.
@@ -94,14 +103,15 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
     // Steps are counted without being kept: there may be millions.
     let mut counted = 0;
     let mut rest = settled.clone();
-    rest.program.steps.retain(|located| match &located.step {
-        Step::Cut(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. })
-            if log.method == Method::OddEven && form == Form::Lines =>
-        {
+    rest.program.steps.retain(|located| {
+        let Some(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) = located.step.cut() else {
+            return true;
+        };
+        let steps = log.method == Method::OddEven && form == Form::Lines;
+        if steps {
             counted += settle::steps(log).map_or(0, Iterator::count);
-            false
         }
-        Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => true,
+        !steps
     });
     let program = interpolate::interpolate(&rest, form, machine, tolerance, tolerance)?;
     Ok(counted + count(&convert::convert(program, form, machine)?))
@@ -109,17 +119,13 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
 
 /// How many blocks the paths of a converted program take.
 pub fn count(program: &Program<f64, Curve>) -> usize {
-    program
-        .steps
-        .iter()
-        .map(|located| match &located.step {
-            Step::Cut(Cut { role: Role::Path, curve, .. }) => match curve {
-                Curve::Lines(line) | Curve::Through(_, line) => line.count(),
-                Curve::Polynomial(pieces) => pieces.len(),
-                Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
-                Curve::Logarithmic(_) => 0,
-            },
-            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 0,
+    let cuts = program.steps.iter().filter_map(|located| located.step.cut());
+    cuts.filter(|cut| cut.role == Role::Path)
+        .map(|cut| match &cut.curve {
+            Curve::Lines(line) | Curve::Through(_, line) => line.count(),
+            Curve::Polynomial(pieces) => pieces.len(),
+            Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
+            Curve::Logarithmic(_) => 0,
         })
         .sum()
 }

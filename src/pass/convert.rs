@@ -31,9 +31,14 @@ pub fn convert(
                     .map_err(|message| Diagnostic::refusal("form-out-of-reach", message).at(span, ""))?;
                 Step::Cut(Cut { feed, role: Role::Path, curve })
             }
-            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
-                step
-            }
+            step @ (Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_)) => step,
         };
         steps.push(Located { step, span });
     }

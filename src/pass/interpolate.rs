@@ -4,10 +4,13 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
+use crate::geom::logcurve::LogCurve;
 use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Step};
 use crate::machine::Machine;
 use crate::pass::settle::{steps, through_points};
+use crate::pass::stretch::{Stretch, stretch_of, stretches};
 use crate::source::Span;
+use crate::units::DEGREES;
 
 /// The program with every logarithmic curve followed within `tolerance` mm, in shapes that `form` can be made of.
 /// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow.
@@ -23,36 +26,76 @@ pub fn interpolate(
 ) -> Result<Program<f64, Curve>, Diagnostics> {
     let mut steps = Vec::with_capacity(intent.program.steps.len());
     // Flutes and passes are one curve, indexed and shifted: it is fitted once.
-    let mut fitted: Option<(Logarithmic, Vec<Bezier>)> = None;
+    let modulo = machine.axes.as_slice().iter().any(|(axis, _)| machine.limits(*axis).modulo);
+    let mut fits = Fits { machine, tolerance, known: Vec::new() };
     for located in &intent.program.steps {
-        let step = match &located.step {
+        match &located.step {
             Step::Cut(Cut { feed, role, curve: Curve::Logarithmic(log) }) => {
                 let refused = |error| out_of_reach(error, located.span);
-                let curve = match piece_degree(log, form, machine) {
-                    Some(degree) => {
-                        let base = Logarithmic { curve: log.curve.base(), ..log.clone() };
-                        let known = fitted.take().filter(|(known, _)| *known == base);
-                        let (_, pieces) = fitted.insert(match known {
-                            Some(known) => known,
-                            None => {
-                                let shared = machine.spline.shared_parameter;
-                                let pieces = pieces(&base, degree, shared, tolerance).map_err(refused)?;
-                                (base, pieces)
-                            }
-                        });
-                        Curve::Polynomial(placed(pieces, log))
+                let mut cuts = Vec::new();
+                let whole = matches!(form, Form::Through(_));
+                let stretches = stretches(log, *feed, whole, machine);
+                if let Some(degree) = piece_degree(log, form, machine) {
+                    for stretch in &stretches {
+                        let pieces = fits.pieces(&stretch.path, degree).map_err(refused)?;
+                        cuts.push((stretch.feed, Curve::Polynomial(placed(pieces, &stretch.path))));
                     }
-                    None => points(log, form, tolerance, asked).map_err(refused)?,
-                };
-                Step::Cut(Cut { feed: *feed, role: *role, curve })
+                } else {
+                    cuts = points(log, &stretches, form, modulo, (tolerance, asked)).map_err(refused)?;
+                }
+                if log.back {
+                    cuts = cuts.into_iter().rev().map(|(feed, curve)| (feed, reversed(curve))).collect();
+                }
+                steps.extend(cuts.into_iter().map(|(feed, curve)| Located {
+                    step: Step::Cut(Cut { feed, role: *role, curve }),
+                    span: located.span,
+                }));
             }
-            step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
-                step.clone()
-            }
-        };
-        steps.push(Located { step, span: located.span });
+            step @ (Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_)) => steps.push(Located { step: step.clone(), span: located.span }),
+        }
     }
-    Ok(Program { name: intent.program.name.clone(), axes: intent.program.axes, steps })
+    let Program { name, number, axes, .. } = &intent.program;
+    Ok(Program { name: name.clone(), number: *number, axes: *axes, steps })
+}
+
+/// A path run the other way.
+fn reversed(curve: Curve) -> Curve {
+    match curve {
+        Curve::Lines(line) => Curve::Lines(line.reversed()),
+        Curve::Through(kind, line) => Curve::Through(kind, line.reversed()),
+        Curve::Polynomial(pieces) => Curve::Polynomial(pieces.iter().rev().map(Bezier::reversed).collect()),
+        // `interpolate` makes none of these.
+        Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
+    }
+}
+
+/// Pieces of curves that were fitted already.
+struct Fits<'m> {
+    machine: &'m Machine,
+    tolerance: f64,
+    /// Stretches of paths that are neither indexed nor shifted.
+    known: Vec<(Logarithmic, Vec<Bezier>)>,
+}
+
+impl Fits<'_> {
+    fn pieces(&mut self, stretch: &Logarithmic, degree: usize) -> Result<&[Bezier], FitError> {
+        let base = Logarithmic { curve: stretch.curve.base(), ..stretch.clone() };
+        let known = &mut self.known;
+        if let Some(at) = known.iter().position(|(other, _)| *other == base) {
+            return Ok(&known[at].1);
+        }
+        let shared = self.machine.spline.shared_parameter;
+        let pieces = pieces(&base, degree, shared, self.tolerance)?;
+        known.push((base, pieces));
+        Ok(known.last().map_or(&[], |(_, pieces)| pieces))
+    }
 }
 
 fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
@@ -72,24 +115,67 @@ fn piece_degree(log: &Logarithmic, form: Form, machine: &Machine) -> Option<usiz
     }
 }
 
-/// One curve as points: those that the control leads its own spline through, or the ends of lines.
-fn points(log: &Logarithmic, form: Form, tolerance: f64, asked: f64) -> Result<Curve, FitError> {
+/// One path as points, those that the control leads its own spline through or the ends of lines, with F of each stretch.
+fn points(
+    log: &Logarithmic,
+    stretches: &[Stretch],
+    form: Form,
+    modulo: bool,
+    (tolerance, asked): (f64, f64),
+) -> Result<Vec<(Option<f64>, Curve)>, FitError> {
     match (form, log.method) {
         (Form::Through(kind), _) => {
-            Ok(Curve::Through(kind, polyline(log, through_points(log, asked)?.into_iter())))
+            let line = polyline(log, log.curve.start(), through_points(log, asked)?.into_iter());
+            Ok(vec![(stretches[0].feed, Curve::Through(kind, line))])
         }
         (Form::Lines | Form::Polynomial { .. } | Form::Nurbs, Method::OddEven) => {
-            Ok(Curve::Lines(polyline(log, steps(log).map_err(|_| FitError { tolerance })?)))
+            let mut lines: Vec<(Option<f64>, Polyline)> = Vec::new();
+            let mut last = log.curve.position(log.curve.start());
+            let mut at = usize::MAX;
+            for (x, a) in steps(log).map_err(|_| FitError { tolerance })? {
+                let stretch = stretch_of(stretches, x);
+                if stretch != at {
+                    at = stretch;
+                    lines.push((stretches[at].feed, Polyline::new(last, 4)));
+                }
+                last = log.curve.position_with(x, a);
+                if let Some((_, line)) = lines.last_mut() {
+                    line.push(&last);
+                }
+            }
+            Ok(lines.into_iter().map(|(feed, line)| (feed, Curve::Lines(line))).collect())
         }
-        (Form::Lines | Form::Polynomial { .. } | Form::Nurbs, Method::Auto | Method::Direct) => {
-            let xs = fit::chords(&log.curve, tolerance)?;
-            Ok(Curve::Lines(polyline(log, xs.into_iter().skip(1).map(|x| (x, log.curve.angle(x))))))
-        }
+        (Form::Lines | Form::Polynomial { .. } | Form::Nurbs, Method::Auto | Method::Direct) => stretches
+            .iter()
+            .map(|Stretch { path, feed, .. }| {
+                let mut xs = fit::chords(&path.curve, tolerance)?;
+                if modulo {
+                    xs = in_steps(&path.curve, &xs);
+                }
+                let points = xs.into_iter().skip(1).map(|x| (x, path.curve.angle(x)));
+                Ok((*feed, Curve::Lines(polyline(path, path.curve.start(), points))))
+            })
+            .collect(),
     }
 }
 
-fn polyline(log: &Logarithmic, points: impl Iterator<Item = (f64, f64)>) -> Polyline {
-    let mut line = Polyline::new(log.curve.position(0.0), 4);
+/// The most degrees that a line turns an axis that wraps: well below the 180 at which both ways are as long.
+const MOST_STEP: f64 = 120.0;
+
+/// The same X with others between them, so that no line turns A by more than [`MOST_STEP`].
+fn in_steps(curve: &LogCurve, xs: &[f64]) -> Vec<f64> {
+    let mut all = vec![curve.start()];
+    for pair in xs.windows(2) {
+        let turn = (curve.angle(pair[1]) - curve.angle(pair[0])).abs() * DEGREES;
+        let n = (turn / MOST_STEP) as u32 + 1;
+        all.extend((1..n).map(|i| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(n)));
+        all.push(pair[1]);
+    }
+    all
+}
+
+fn polyline(log: &Logarithmic, start: f64, points: impl Iterator<Item = (f64, f64)>) -> Polyline {
+    let mut line = Polyline::new(log.curve.position(start), 4);
     for (x, a) in points {
         line.push(&log.curve.position_with(x, a));
     }
@@ -115,7 +201,7 @@ fn placed(pieces: &[Bezier], log: &Logarithmic) -> Vec<Bezier> {
 /// whether the control lets A follow the parameter or the arc length.
 fn pieces(log: &Logarithmic, degree: usize, shared: bool, tolerance: f64) -> Result<Vec<Bezier>, FitError> {
     if log.curve.is_straight() {
-        let line = Bezier::line(log.curve.position(0.0), log.curve.position(log.curve.end()));
+        let line = Bezier::line(log.curve.position(log.curve.start()), log.curve.position(log.curve.end()));
         return Ok(vec![line]);
     }
     let linear = fit::linear_in_x(&log.curve, degree, tolerance);

@@ -1,13 +1,21 @@
-//! How fast each axis has to move, against what the machine file allows.
+//! How fast each axis has to move and to speed up, against what the machine file allows.
 //!
 //! F is the speed along the path of the axes that the machine file says it counts: the linear ones, or all with a degree
-//! as a millimetre. On a piece with position x(t) and path speed L′ = √(ΣX′²) axis i moves at F · |x_i′|/L′. Pieces are halved until each part is a 32nd; there |x_i′| is bounded from
-//! above and each X′ from below by Bernstein coefficients, so the figure is never too low.
+//! as a millimetre. On a piece with position x(t) and path speed L′ = √(ΣX′²) axis i moves, F being constant, at
+//!
+//! ```text
+//! v_i = F x_i′/L′          a_i = F² (x_i″ L′² − x_i′ ΣX′X″)/L′⁴
+//! ```
+//!
+//! Pieces are halved until each part is a 32nd; there the derivatives are bounded from above and L′ from below by
+//! Bernstein coefficients, so that no figure is too low. Where F counts mm at the surface, the rotary axis' share of L′ is
+//! left out, and the figures are too high rather than too low. Starts, stops and corners are not in it.
 
+use crate::decimal::power_of_ten;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bernstein::Bernstein;
 use crate::geom::bezier::Bezier;
-use crate::ir::{Cut, Decimals, Step, Written};
+use crate::ir::{Cut, Decimals, Written, WrittenPoints};
 use crate::machine::{Machine, RotaryFeed};
 use crate::source::Span;
 use crate::units::{Kind, MAX_AXES, Position};
@@ -16,57 +24,157 @@ use crate::verify::to_nurbs;
 /// Each piece is looked at in 2⁵ parts.
 const HALVINGS: u32 = 5;
 
-/// The fastest that an axis was found to move, and where.
+/// The most that was found of something, and where.
 #[derive(Clone, Copy)]
-struct Fastest {
-    speed: f64,
+struct Most {
+    amount: f64,
     at: Position,
-    feed: f64,
     span: Span,
 }
 
-/// A refusal for each axis that would have to move faster than it can.
-pub fn speeds(decimals: &Decimals, machine: &Machine) -> Diagnostics {
+/// A figure for each axis, where it has one.
+type Figures = [Option<Most>; MAX_AXES];
+
+/// A refusal for each axis that would have to move or to speed up faster than it can.
+pub(super) fn check(decimals: &Decimals, machine: &Machine) -> Diagnostics {
     let axes = decimals.program.axes;
-    let limited: Vec<(usize, f64)> =
-        (0..axes.count()).filter_map(|i| Some((i, machine.limits(axes.name(i)).max_speed?))).collect();
+    let limits = |i: usize| machine.limits(axes.name(i));
+    let limited: Vec<usize> = (0..axes.count())
+        .filter(|i| limits(*i).max_speed.is_some() || limits(*i).max_acceleration.is_some())
+        .collect();
     let mut found = Diagnostics::new();
     if limited.is_empty() {
         return found;
     }
-    let mut fastest: [Option<Fastest>; MAX_AXES] = [None; MAX_AXES];
+    let (speeds, accelerations) = figures(decimals, machine, &limited);
+    for axis in limited {
+        let name = axes.name(axis);
+        let unit = match axes.kind(axis) {
+            Kind::Linear | Kind::Direction => "mm",
+            Kind::Rotary => "degrees",
+        };
+        let place =
+            |most: &Most| format!("at {} {:.3}; machine `{}` allows", axes.name(0), most.at[0], machine.name);
+        if let (Some(most), Some(allowed)) = (speeds[axis], limits(axis).max_speed)
+            && allowed < most.amount
+        {
+            let turns = match axes.kind(axis) {
+                Kind::Linear | Kind::Direction => String::new(),
+                Kind::Rotary => format!(" ({:.1} rev/min)", most.amount / 360.0),
+            };
+            let message = format!(
+                "{name} would have to move at {:.0} {unit}/min{turns} {} {allowed}",
+                most.amount,
+                place(&most)
+            );
+            // Rounded down, so that the figure named holds.
+            let share = (allowed / most.amount * 1.0e4).floor() / 100.0;
+            found.push(
+                Diagnostic::refusal("axis-speed", message)
+                    .at(most.span, "")
+                    .hint(format!("{share} percent of this feed would hold it")),
+            );
+        }
+        if let (Some(most), Some(allowed)) = (accelerations[axis], limits(axis).max_acceleration)
+            && allowed < most.amount
+        {
+            let message = format!(
+                "{name} would have to speed up by {:.1} {unit}/s² inside a block {} {allowed}",
+                most.amount,
+                place(&most)
+            );
+            // It grows with the square of the feed.
+            let share = ((allowed / most.amount).sqrt() * 1.0e4).floor() / 100.0;
+            found.push(
+                Diagnostic::refusal("axis-acceleration", message)
+                    .at(most.span, "")
+                    .hint(format!("{share} percent of this feed would hold it")),
+            );
+        }
+    }
+    found
+}
+
+/// The greatest speed of each axis at feed, mm/min or degrees/min.
+pub fn greatest_speeds(decimals: &Decimals, machine: &Machine) -> [f64; MAX_AXES] {
+    let all: Vec<usize> = (0..decimals.program.axes.count()).collect();
+    figures(decimals, machine, &all).0.map(|most| most.map_or(0.0, |most| most.amount))
+}
+
+/// The greatest speeds and accelerations of some axes.
+fn figures(decimals: &Decimals, machine: &Machine, wanted: &[usize]) -> (Figures, Figures) {
+    let mut speeds: Figures = [None; MAX_AXES];
+    let mut accelerations: Figures = [None; MAX_AXES];
+    let counts = counts(decimals, machine);
+    let take = |figures: &mut Figures, axis: usize, most: Most| {
+        if figures[axis].is_none_or(|known| known.amount < most.amount) {
+            figures[axis] = Some(most);
+        }
+    };
     for located in &decimals.program.steps {
-        let Step::Cut(Cut { feed: Some(feed), curve, .. }) = &located.step else { continue };
-        let feed = feed.to_f64();
+        let Some(Cut { feed: Some(feed), curve, .. }) = located.step.cut() else { continue };
+        let (feed, span) = (feed.to_f64(), located.span);
+        if let Written::Lines(line) | Written::Through(_, line) = curve {
+            let shares = steepest(decimals, line, &counts);
+            for &axis in wanted {
+                let (share, block) = shares[axis];
+                let at = match block.checked_sub(1) {
+                    None => decimals.position(&line.start),
+                    Some(before) => {
+                        line.points().nth(before).map_or([0.0; MAX_AXES], |p| decimals.position(&p))
+                    }
+                };
+                take(&mut speeds, axis, Most { amount: feed * share, at, span });
+            }
+            continue;
+        }
         each_piece(decimals, curve, |piece| {
-            for (axis, _) in &limited {
-                let (speed, at) = axis_speed(decimals, machine, piece, *axis, feed);
-                if fastest[*axis].is_none_or(|known| known.speed < speed) {
-                    fastest[*axis] = Some(Fastest { speed, at, feed, span: located.span });
-                }
+            for &axis in wanted {
+                let (speed, acceleration) = of_piece(&counts, piece, axis, feed);
+                let most = |(amount, t)| Most { amount, at: piece.eval(t), span };
+                take(&mut speeds, axis, most(speed));
+                take(&mut accelerations, axis, most(acceleration));
             }
         });
     }
-    for (axis, most) in limited {
-        let Some(Fastest { speed, at, feed, span }) = fastest[axis].filter(|known| most < known.speed) else {
-            continue;
-        };
-        let name = axes.name(axis);
-        let (unit, turns) = match axes.kind(axis) {
-            Kind::Linear | Kind::Direction => ("mm/min", String::new()),
-            Kind::Rotary => ("degrees/min", format!(" ({:.1} rev/min)", speed / 360.0)),
-        };
-        let message = format!(
-            "{name} would have to move at {speed:.0} {unit}{turns} at {} {:.3}; machine `{}` allows {most}",
-            axes.name(0),
-            at[0],
-            machine.name
-        );
-        let hint =
-            format!("a feed of {:.3} mm/min would hold it", (feed * most / speed * 1.0e3).floor() / 1.0e3);
-        found.push(Diagnostic::refusal("axis-speed", message).at(span, "").hint(hint));
+    (speeds, accelerations)
+}
+
+/// Of each axis the greatest share of a line's way, and the line: its way by that of the axes that F counts. A line that
+/// moves none of those runs at F.
+fn steepest(decimals: &Decimals, line: &WrittenPoints, counts: &[usize]) -> [(f64, usize); MAX_AXES] {
+    let units: [f64; MAX_AXES] = std::array::from_fn(|i| 1.0 / power_of_ten(decimals.digits[i]) as f64);
+    let mut counted = [0.0; MAX_AXES];
+    for i in counts {
+        counted[*i] = 1.0;
     }
-    found
+    // Squares are compared, and only the greatest are taken the root of.
+    let mut greatest = [(0.0, 0); MAX_AXES];
+    let mut from: &[i64] = &line.start;
+    for (block, to) in line.units.chunks_exact(line.stride).enumerate() {
+        let mut squares = [0.0; MAX_AXES];
+        let mut path = 0.0;
+        for (i, (to, from)) in to.iter().zip(from).enumerate() {
+            let way = (to - from) as f64 * units[i];
+            squares[i] = way * way;
+            path += counted[i] * squares[i];
+        }
+        for (greatest, square) in greatest.iter_mut().zip(squares) {
+            let share = if path == 0.0 { f64::from(square != 0.0) } else { square / path };
+            if greatest.0 < share {
+                *greatest = (share, block);
+            }
+        }
+        from = to;
+    }
+    greatest.map(|(share, block)| (f64::sqrt(share), block))
+}
+
+/// The axes that F counts.
+fn counts(decimals: &Decimals, machine: &Machine) -> Vec<usize> {
+    let axes = decimals.program.axes;
+    let counts = |i: &usize| axes.kind(*i) == Kind::Linear || machine.rotary_feed == RotaryFeed::DegreesAsMm;
+    (0..axes.count()).filter(counts).collect()
 }
 
 /// Every piece of a curve in decimals.
@@ -95,46 +203,80 @@ pub(super) fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl F
     }
 }
 
-/// An upper bound of an axis' speed on a polynomial piece, and the start of the part where it is reached. A block that
-/// moves no linear axis runs at F in the rotary one.
-fn axis_speed(
-    decimals: &Decimals,
-    machine: &Machine,
-    piece: &Bezier,
-    axis: usize,
-    feed: f64,
-) -> (f64, Position) {
-    let axes = decimals.program.axes;
-    let derivative = |i: usize| piece.numerator(i).derivative();
-    let counts = |i: &usize| axes.kind(*i) == Kind::Linear || machine.rotary_feed == RotaryFeed::DegreesAsMm;
-    let linear: Vec<Bernstein> = (0..axes.count()).filter(counts).map(derivative).collect();
-    let own = derivative(axis);
-    if own.max_abs() == 0.0 {
-        return (0.0, piece.start());
+/// The derivatives of a piece on one interval of t.
+#[derive(Clone)]
+struct Derivatives {
+    own: Bernstein,
+    own_second: Bernstein,
+    /// Of each axis that F counts, the first and the second.
+    path: Vec<(Bernstein, Bernstein)>,
+    t: f64,
+    level: u32,
+}
+
+impl Derivatives {
+    fn halves(&self) -> [Derivatives; 2] {
+        let (own, second) = (self.own.halves(), self.own_second.halves());
+        let path: Vec<_> = self.path.iter().map(|(x, y)| (x.halves(), y.halves())).collect();
+        let level = self.level + 1;
+        let width = 1.0 / f64::from(1u32 << level);
+        [
+            Derivatives {
+                own: own.0,
+                own_second: second.0,
+                path: path.iter().map(|(x, y)| (x.0, y.0)).collect(),
+                t: self.t,
+                level,
+            },
+            Derivatives {
+                own: own.1,
+                own_second: second.1,
+                path: path.iter().map(|(x, y)| (x.1, y.1)).collect(),
+                t: self.t + width,
+                level,
+            },
+        ]
     }
-    if linear.iter().all(|x| x.max_abs() == 0.0) {
-        return (feed, piece.start());
+}
+
+/// Upper bounds of an axis' speed (a minute) and acceleration (a second squared) on a polynomial piece, and t where
+/// the part begins in which each is reached. A block that moves no axis that F counts runs at F in the others.
+fn of_piece(counts: &[usize], piece: &Bezier, axis: usize, feed: f64) -> ((f64, f64), (f64, f64)) {
+    let derivatives = |i: usize| {
+        let first = piece.numerator(i).derivative();
+        (first, first.derivative())
+    };
+    let path: Vec<(Bernstein, Bernstein)> = counts.iter().map(|i| derivatives(*i)).collect();
+    let (own, own_second) = derivatives(axis);
+    if own.max_abs() == 0.0 {
+        return ((0.0, 0.0), (0.0, 0.0));
+    }
+    if path.iter().all(|(x, _)| x.max_abs() == 0.0) {
+        return ((feed, 0.0), (0.0, 0.0));
     }
     let depth = if piece.degree == 1 { 0 } else { HALVINGS };
-    let mut worst = (0.0, 0.0);
-    let mut stack = vec![(own, linear, 0.0, 0u32)];
-    while let Some((own, linear, t, level)) = stack.pop() {
-        if level == depth {
-            let least = |x: &Bernstein| x.min().max(-x.max()).max(0.0);
-            let path = linear.iter().map(|x| least(x) * least(x)).sum::<f64>().sqrt();
-            let speed = feed * own.max_abs() / path;
-            if worst.0 < speed {
-                worst = (speed, t);
-            }
+    let (mut speed, mut acceleration) = ((0.0, 0.0), (0.0, 0.0));
+    let mut stack = vec![Derivatives { own, own_second, path, t: 0.0, level: 0 }];
+    while let Some(part) = stack.pop() {
+        if part.level < depth {
+            stack.extend(part.halves());
             continue;
         }
-        let (left, right) = own.halves();
-        let halves: Vec<(Bernstein, Bernstein)> = linear.iter().map(Bernstein::halves).collect();
-        let width = 0.5 / f64::from(1u32 << level);
-        stack.push((left, halves.iter().map(|half| half.0).collect(), t, level + 1));
-        stack.push((right, halves.iter().map(|half| half.1).collect(), t + width, level + 1));
+        let least = |x: &Bernstein| x.min().max(-x.max()).max(0.0);
+        let square = part.path.iter().map(|(x, _)| least(x) * least(x)).sum::<f64>();
+        let across = part.path.iter().map(|(x, y)| x.max_abs() * y.max_abs()).sum::<f64>();
+        let fast = feed * part.own.max_abs() / square.sqrt();
+        // mm/min becomes mm/s.
+        let feed = feed / 60.0;
+        let quick = feed * feed * (part.own_second.max_abs() + part.own.max_abs() * across / square) / square;
+        if speed.0 < fast {
+            speed = (fast, part.t);
+        }
+        if acceleration.0 < quick {
+            acceleration = (quick, part.t);
+        }
     }
-    (worst.0, piece.eval(worst.1))
+    (speed, acceleration)
 }
 
 #[cfg(test)]
@@ -180,7 +322,7 @@ mod tests {
             // Bounds are never too low, and splitting in 32 keeps them within some percent.
             let true_turns = if motion == "linear" || motion == "aspline" { 100.0 } else { 109.8 };
             assert!((true_turns..116.0).contains(&turns), "{motion}: {turns}");
-            // The feed that is named holds.
+            // The share of the feed that is named holds.
             let feed: f64 = refusal.hints[0].split(' ').find_map(|w| w.parse().ok()).unwrap();
             assert!(
                 refusals(machine, motion, SMALL, feed).0.iter().all(|d| d.id != "axis-speed"),
@@ -202,7 +344,8 @@ mod tests {
             ids("extends = \"sinumerik\"\n[axis.A]\nmin = -3600\nmax = 3600\nmax_speed = 3600\n"),
             ["rotary-range"]
         );
-        assert_eq!(ids("extends = \"sinumerik\"\n[axis.A]\nkind = \"modulo\"\n"), ["rotary-wraps"]);
+        // Counted from its index, each flute stays within 0 to 360.
+        assert_eq!(ids("extends = \"sinumerik\"\n[axis.A]\nkind = \"modulo\"\n"), [""; 0]);
         assert_eq!(ids("extends = \"sinumerik\"\n[axis.X]\nmax = 25\n"), ["axis-range", "rotary-range"]);
         assert_eq!(ids("extends = \"sinumerik\"\n[axis.Q]\nmax = 25\n"), ["axis-unknown"]);
     }

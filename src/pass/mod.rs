@@ -5,16 +5,21 @@
 //! |---|---|
 //! | [`choose`] | one motion for the program, where `auto` leaves it open |
 //! | [`settle`] | method and Δl, where the input leaves them open: after this the intent is exact |
+//! | [`place`] | work offsets, where an axis wraps or sections are to be alike |
+//! | [`stretch`] | what F has to be, and where a path is cut so that it can be |
 //! | [`interpolate`] | logarithmic curves become steps, points or pieces |
 //! | [`convert`] | every curve takes the form of the motion, exactly |
 //! | [`quantise`] | every number is rounded, once |
 //! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
-//! | [`limits`] | how fast each axis has to move |
+//! | [`range`], [`limits`] | how far and how fast each axis has to move |
 
 pub mod check;
 pub mod choose;
 pub mod convert;
 pub mod interpolate;
 pub mod limits;
+pub mod place;
 pub mod quantise;
+pub mod range;
 pub mod settle;
+pub mod stretch;

@@ -19,14 +19,14 @@
 //! positions' last decimal, so that K3 is a whole number of q and nothing is lost. In the basis of the IR, a₂ = 3 K3 + K2
 //! and a₃ = −K3.
 
-use crate::decimal::{Decimal, round_units};
+use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role, Step, Units,
-    Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role, Shift, Step,
+    Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
 };
 use crate::machine::Machine;
 use crate::units::{DEGREES, Kind, MAX_AXES};
@@ -45,6 +45,8 @@ struct Quantiser<'m> {
     digits: [u8; MAX_AXES],
     coefficient_digits: [u8; MAX_AXES],
     position: [Option<i64>; MAX_AXES],
+    /// Where each axis counts from.
+    origin: [Origin; MAX_AXES],
     closing: bool,
 }
 
@@ -73,8 +75,9 @@ pub fn quantise(
         d
     });
     let closing = form == (Form::Polynomial { closing: true });
+    let origin = [Origin::default(); MAX_AXES];
     let mut quantiser =
-        Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], closing };
+        Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], origin, closing };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
         let step = quantiser.step(step).map_err(|Unwritable| {
@@ -95,8 +98,8 @@ pub fn quantise(
         }
         steps.push(Located { step, span });
     }
-    let program = Program { name: program.name, axes: program.axes, steps };
-    Ok(Decimals { program, digits })
+    let program = Program { steps, name: program.name, number: program.number, axes: program.axes };
+    Ok(Decimals { program, digits, setup: Vec::new() })
 }
 
 /// A coefficient with so many decimals, or as many as a float of its size holds.
@@ -106,7 +109,7 @@ fn coefficient(a: f64, digits: u8) -> Option<Decimal> {
 
 impl Quantiser<'_> {
     fn units(&self, axis: usize, x: f64) -> Result<i64, Unwritable> {
-        round_units(x, self.digits[axis]).ok_or(Unwritable)
+        self.origin[axis].round(x, self.digits[axis]).ok_or(Unwritable)
     }
 
     fn point(&self, point: &[f64; MAX_AXES]) -> Result<Units, Unwritable> {
@@ -138,6 +141,20 @@ impl Quantiser<'_> {
             Step::Comment(text) => Step::Comment(text),
             Step::Tool(number) => Step::Tool(number),
             Step::Spindle(rpm) => Step::Spindle(rate(rpm)?),
+            Step::Coolant => Step::Coolant,
+            Step::Home(axis) => {
+                self.position[axis] = None;
+                Step::Home(axis)
+            }
+            Step::Shift(shifts) => {
+                let mut rounded = Vec::with_capacity(shifts.len());
+                for Shift { axis, to, parameter } in shifts {
+                    let units = round_units(to, self.digits[axis]).ok_or(Unwritable)?;
+                    self.origin[axis] = Origin { at: to, units };
+                    rounded.push(Shift { axis, to: Decimal::new(units, self.digits[axis]), parameter });
+                }
+                Step::Shift(rounded)
+            }
             Step::Rapid(targets) => {
                 let mut rounded = Vec::with_capacity(targets.len());
                 for (axis, to) in targets {

@@ -1,79 +1,182 @@
 //! Paths of a cutter's flute, in every form that they are written in.
 
 use super::{Cursor, Found, Ideal, Status};
-use crate::decimal::{round_units, unit_at_surface};
+use crate::decimal::{Decimal, unit_at_surface};
 use crate::diagnostic::Diagnostics;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric, OrderError, log_chord, log_piece, segment_piece};
 use crate::geom::logcurve::LogCurve;
 use crate::geom::oddeven::{OddEven, polyline_deviation};
 use crate::ir::{Logarithmic, Method, Written, WrittenPoints};
+use crate::machine::RotaryFeed;
 use crate::pass::settle::{steps, through_points};
+use crate::pass::stretch::{Stretch, stretch_of, stretches};
 use crate::units::{DEGREES, Position};
 
-impl Cursor<'_> {
-    /// Meets the path of a flute.
+impl<'p> Cursor<'p> {
+    /// Meets the path of a flute, stretch by stretch.
     pub(super) fn logarithmic(
         &mut self,
         log: &Logarithmic,
-        written: &Written,
+        feed: Option<f64>,
         tolerance: f64,
         ideal: &mut Ideal,
     ) -> Result<Found, Diagnostics> {
         let curve = &log.curve;
+        let written = &self.written()?.curve;
+        let whole = matches!(written, Written::Through(..));
+        let stretches = stretches(log, feed, whole, self.machine);
+        let length = curve.end() - curve.start();
         let mut found = Found {
-            deviation: Bound::ZERO,
-            status: Status::Proved,
-            from_ideal: None,
-            path_blocks: 0,
-            cutting_length: curve.end() * curve.length_per_x(),
+            feed_error: stretches.iter().map(|stretch| stretch.error).fold(0.0, f64::max),
+            cutting_length: length * curve.length_per_x(),
+            ..Found::new()
         };
-        if log.method == Method::OddEven {
-            let asked = steps(log).map_err(|error| self.differs("not-comparable", error.to_string()))?;
-            // An overrun runs on to the last step.
-            let overrun_end = if log.overrun { asked.clone().last().map(|(x, _)| x) } else { None };
-            let key = Logarithmic { curve: curve.base(), ..log.clone() };
-            let from_ideal = match ideal.0.take() {
-                Some((known, bound)) if known == key => bound,
-                _ => polyline_deviation(curve, asked.clone()),
-            };
-            ideal.0 = Some((key, from_ideal));
-            found.from_ideal = Some(from_ideal);
+        if log.method != Method::OddEven {
             match written {
-                Written::Lines(points) => self.odd_even_lines(curve, asked, points, &mut found)?,
+                Written::Lines(_) => self.chords(log, &stretches, &mut found, tolerance)?,
                 Written::Polynomial(_) | Written::Nurbs(_) => {
-                    let pieces = self.pieces(written)?;
-                    self.odd_even_pieces(curve, asked, &pieces, &mut found)?;
-                    found.path_blocks = blocks(written, pieces.len());
-                    self.advance();
+                    let pieces = self.path_pieces(log, curve.end(), &stretches, &mut found)?;
+                    for (i, piece) in pieces.iter().enumerate() {
+                        let bound = log_piece(curve, piece).map_err(|error| {
+                            self.differs("order-differs", format!("in piece {}: {error}", i + 1))
+                        })?;
+                        found.deviation = found.deviation.max(bound);
+                    }
+                    if let (Some(first), Some(last)) = (pieces.first(), pieces.last()) {
+                        ends(curve, first.start()[0], last.end()[0], &mut found);
+                    }
                 }
-                Written::Through(_, points) => self.through(log, points, tolerance, &mut found)?,
-            }
-            if let Some(end) = overrun_end {
-                found.cutting_length = end * curve.length_per_x();
+                Written::Through(_, points) => {
+                    self.through(log, &stretches, points, tolerance, &mut found)?;
+                }
             }
             return Ok(found);
         }
+        let asked = steps(log).map_err(|error| self.differs("not-comparable", error.to_string()))?;
+        // An overrun runs on to the last step.
+        let end =
+            if log.overrun { asked.clone().last().map_or(curve.end(), |(x, _)| x) } else { curve.end() };
+        let key = Logarithmic { curve: curve.base(), ..log.clone() };
+        let from_ideal = match ideal.0.take() {
+            Some((known, bound)) if known == key => bound,
+            _ => polyline_deviation(curve, asked.clone()),
+        };
+        ideal.0 = Some((key, from_ideal));
+        found.from_ideal = Some(from_ideal);
         match written {
-            Written::Lines(points) => self.chords(curve, points, &mut found, tolerance)?,
-            Written::Polynomial(_) | Written::Nurbs(_) => {
-                let pieces = self.pieces(written)?;
-                let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
-                    return Err(self.differs("less-than-asked", "a path without blocks".to_owned()));
-                };
-                found.path_blocks = blocks(written, pieces.len());
-                for (i, piece) in pieces.iter().enumerate() {
-                    let bound = log_piece(curve, piece).map_err(|error| {
-                        self.differs("order-differs", format!("in piece {}: {error}", i + 1))
-                    })?;
-                    found.deviation = found.deviation.max(bound);
+            Written::Lines(_) => {
+                let start = (curve.start(), curve.angle(curve.start()));
+                let stretch = |x: f64| stretch_of(&stretches, x);
+                if log.back {
+                    let mut points: Vec<(f64, f64)> = std::iter::once(start).chain(asked).collect();
+                    points.reverse();
+                    let steps = points.windows(2).map(|pair| (pair[1], stretch(pair[0].0)));
+                    self.odd_even_lines(curve, points[0], steps, &stretches, &mut found)?;
+                } else {
+                    let steps = asked.map(|point| (point, stretch(point.0)));
+                    self.odd_even_lines(curve, start, steps, &stretches, &mut found)?;
                 }
-                ends(curve, first.start()[0], last.end()[0], &mut found);
-                self.advance();
             }
-            Written::Through(_, points) => self.through(log, points, tolerance, &mut found)?,
+            Written::Polynomial(_) | Written::Nurbs(_) => {
+                let pieces = self.path_pieces(log, end, &stretches, &mut found)?;
+                self.odd_even_pieces(curve, asked, &pieces, &mut found)?;
+            }
+            Written::Through(_, points) => self.through(log, &stretches, points, tolerance, &mut found)?,
         }
+        found.cutting_length = (end - curve.start()) * curve.length_per_x();
         Ok(found)
+    }
+
+    /// Checks F of a stretch.
+    fn stretch_feed(&self, read: Option<Decimal>, stretch: &Stretch) -> Result<(), Diagnostics> {
+        self.same_feed(read, stretch.feed)
+    }
+
+    /// The pieces of a path from where the cursor stands to where X = `end` is reached, in the order of X, each with the
+    /// feed of its stretch.
+    fn path_pieces(
+        &mut self,
+        log: &Logarithmic,
+        end: f64,
+        stretches: &[Stretch],
+        found: &mut Found,
+    ) -> Result<Vec<Bezier>, Diagnostics> {
+        // Half a unit of X is the most that rounding takes from the end.
+        let half = 0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64 + 1.0e-12;
+        let mut all: Vec<Bezier> = Vec::new();
+        loop {
+            let cut = self.written()?;
+            let pieces = self.pieces(&cut.curve)?;
+            if pieces.is_empty() {
+                return Err(self.differs("less-than-asked", "the path ends before its end".to_owned()));
+            }
+            found.path_blocks += blocks(&cut.curve, pieces.len());
+            for piece in &pieces {
+                let reaches = piece.start()[0].max(piece.end()[0]);
+                self.stretch_feed(cut.feed, &stretches[stretch_of(stretches, reaches - half)])?;
+                found.minutes += self.minutes(&log.curve, piece, cut.feed);
+            }
+            all.extend(pieces);
+            self.advance();
+            let reached = all.last().map_or(0.0, |piece| piece.end()[0]);
+            if if log.back { reached <= log.curve.start() + half } else { end - half <= reached } {
+                break;
+            }
+        }
+        if log.back {
+            all = all.iter().rev().map(Bezier::reversed).collect();
+        }
+        Ok(all)
+    }
+
+    /// How long a piece takes, minutes: Simpson's rule on sixteen intervals of the length that F counts; a straight piece
+    /// needs one.
+    fn minutes(&self, curve: &LogCurve, piece: &Bezier, feed: Option<Decimal>) -> f64 {
+        let Some(feed) = feed.map(Decimal::to_f64) else { return 0.0 };
+        let parts = if piece.degree == 1 { 1 } else { 16 };
+        let derivatives: [_; 4] = std::array::from_fn(|axis| piece.numerator(axis).derivative());
+        let x = piece.numerator(0);
+        let rate = |t: f64| {
+            let [dx, dy, dz, da] = std::array::from_fn(|axis: usize| derivatives[axis].eval(t));
+            let turn = match self.machine.rotary_feed {
+                RotaryFeed::Free => 0.0,
+                RotaryFeed::DegreesAsMm => da,
+                RotaryFeed::Surface => da / DEGREES * curve.radius(x.eval(t)),
+            };
+            (dx * dx + dy * dy + dz * dz + turn * turn).sqrt()
+        };
+        let h = 1.0 / f64::from(parts);
+        let part = |i: i32| {
+            let t = f64::from(i) * h;
+            h / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * h) + rate(t + h))
+        };
+        (0..parts).map(part).sum::<f64>() / feed
+    }
+
+    /// The line from one position to another in minutes.
+    #[inline]
+    fn line_minutes(&self, curve: &LogCurve, from: &Position, to: &Position, feed: Option<Decimal>) -> f64 {
+        let Some(feed) = feed.map(Decimal::to_f64) else { return 0.0 };
+        let [dx, dy, dz, da]: [f64; 4] = std::array::from_fn(|axis| to[axis] - from[axis]);
+        let turn = match self.machine.rotary_feed {
+            RotaryFeed::Free => 0.0,
+            RotaryFeed::DegreesAsMm => da,
+            RotaryFeed::Surface => da / DEGREES * curve.radius(0.5 * (from[0] + to[0])),
+        };
+        (dx * dx + dy * dy + dz * dz + turn * turn).sqrt() / feed
+    }
+
+    /// The run of lines that comes next, with F of a stretch.
+    fn lines_of(&self, stretch: &Stretch) -> Result<(&'p WrittenPoints, Option<Decimal>), Diagnostics> {
+        let cut = self.written()?;
+        self.stretch_feed(cut.feed, stretch)?;
+        match &cut.curve {
+            Written::Lines(points) => Ok((points, cut.feed)),
+            Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
+                Err(self.differs("step-differs", "here straight moves were asked".to_owned()))
+            }
+        }
     }
 
     /// Odd-even steps written as lines: the same polyline, every coordinate of every point rounded, nothing else.
@@ -83,22 +186,34 @@ impl Cursor<'_> {
     fn odd_even_lines(
         &mut self,
         curve: &LogCurve,
-        steps: OddEven,
-        points: &WrittenPoints,
+        start: (f64, f64),
+        steps: impl Iterator<Item = ((f64, f64), usize)>,
+        stretches: &[Stretch],
         found: &mut Found,
     ) -> Result<(), Diagnostics> {
-        let start = self.decimals.position(&self.before(points));
-        let mut last = End::of(curve, &start, 0.0, 0.0);
+        let Some(mut run) = self.lines_run()? else {
+            return Err(self.differs("step-differs", "here straight moves were asked".to_owned()));
+        };
+        let mut from = self.decimals.position(&self.before(run));
+        let mut last = End::of(curve, &from, start.0, start.1);
+        let (mut at, mut feed) = (usize::MAX, None);
         found.deviation = found.deviation.max(last.segment(&last));
-        for (x, a) in steps {
-            let Some(units) = self.next_point(points) else {
+        for ((x, a), stretch) in steps {
+            if stretch != at {
+                if at != usize::MAX {
+                    self.leave(run);
+                }
+                (run, feed) = self.lines_of(&stretches[stretch])?;
+                at = stretch;
+            }
+            let Some(units) = self.next_point(run) else {
                 return Err(
                     self.differs("less-than-asked", "points are missing at the end of a path".to_owned())
                 );
             };
             let asked = curve.position_with(x, a);
             for axis in 0..4 {
-                if round_units(asked[axis], self.decimals.digits[axis]) != Some(units[axis]) {
+                if self.units(axis, asked[axis]) != Some(units[axis]) {
                     self.within -= 1;
                     let name = self.decimals.program.axes.name(axis);
                     let message = format!("{name} of this step was asked to be {}", asked[axis]);
@@ -113,13 +228,23 @@ impl Cursor<'_> {
                     return Err(refused);
                 }
             }
-            let end = End::of(curve, &self.decimals.position(&units), x, a);
+            let to = self.decimals.position(&units);
+            let end = End::of(curve, &to, x, a);
             found.deviation = found.deviation.max(last.segment(&end));
             found.path_blocks += 1;
-            last = end;
+            found.minutes += self.line_minutes(curve, &from, &to, feed);
+            (last, from) = (end, to);
         }
-        self.leave(points);
+        self.leave(run);
         Ok(())
+    }
+
+    /// The run of lines that comes next, whatever its feed.
+    fn lines_run(&self) -> Result<Option<&'p WrittenPoints>, Diagnostics> {
+        Ok(match &self.written()?.curve {
+            Written::Lines(points) => Some(points),
+            Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => None,
+        })
     }
 
     /// Odd-even steps written as pieces: each piece runs along one segment, in order.
@@ -137,7 +262,7 @@ impl Cursor<'_> {
         let metric = Metric::new(&metric_kinds, radius);
         // Two roundings of a position, at the radius.
         let slack = 1.0e-9 + unit_at_surface(&self.decimals.program.axes, &self.decimals.digits, radius);
-        let mut from = curve.position(0.0);
+        let mut from = curve.position(curve.start());
         let mut rest = pieces.iter().peekable();
         if let Some(first) = pieces.first() {
             found.deviation = found.deviation.max(metric.distance(&first.start(), &from));
@@ -173,12 +298,14 @@ impl Cursor<'_> {
     /// The curve written as lines: chords at equal X, to the end.
     fn chords(
         &mut self,
-        curve: &LogCurve,
-        points: &WrittenPoints,
+        log: &Logarithmic,
+        stretches: &[Stretch],
         found: &mut Found,
         tolerance: f64,
     ) -> Result<(), Diagnostics> {
-        let mut from = self.decimals.position(&self.before(points));
+        let curve = &log.curve;
+        let Some(mut run) = self.lines_run()? else { return Ok(()) };
+        let mut from = self.decimals.position(&self.before(run));
         let first = from[0];
         let off_cone = |p: &Position| {
             let asked = curve.position_with(p[0], 0.0);
@@ -187,32 +314,52 @@ impl Cursor<'_> {
         };
         let radians = |p: &Position| (p[3] - curve.index) / DEGREES;
         // Half a unit of X is the most that rounding takes from the end.
-        let end = curve.end() - 0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64;
-        while from[0] < end - 1.0e-12 {
-            let Some(units) = self.next_point(points) else {
+        let half = 0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64 + 1.0e-12;
+        let done = |x: f64| if log.back { x <= curve.start() + half } else { curve.end() - half <= x };
+        while !done(from[0]) {
+            if run.count() <= self.within {
+                self.leave(run);
+                match self.lines_run()? {
+                    Some(next) => run = next,
+                    None => {
+                        return Err(
+                            self.differs("less-than-asked", "the path ends before its end".to_owned())
+                        );
+                    }
+                }
+            }
+            let feed = self.written()?.feed;
+            let Some(units) = self.next_point(run) else {
                 return Err(self.differs("less-than-asked", "the path ends before its end".to_owned()));
             };
             let to = self.decimals.position(&units);
-            if to[0] < from[0] {
-                self.within -= 1;
-                return Err(self.differs("order-differs", OrderError::RunsBack.to_string()));
-            }
-            let chord = log_chord(curve, (from[0], radians(&from)), (to[0], radians(&to)));
+            let (low, high) = if log.back { (&to, &from) } else { (&from, &to) };
+            let refused = if high[0] < low[0] {
+                Some(("order-differs", OrderError::RunsBack.to_string()))
+            } else {
+                None
+            };
+            let chord = log_chord(curve, (low[0], radians(low)), (high[0], radians(high)));
             // The distance from the cone is greatest at an end, since both are linear in X.
             let off = off_cone(&from).max(off_cone(&to));
             let bound = Bound { mm: (chord.mm * chord.mm + off * off).sqrt(), rad: chord.rad };
-            if 100.0 * tolerance.max(1.0e-4) < bound.mm {
+            let far = 100.0 * tolerance.max(1.0e-4) < bound.mm;
+            let refused = refused.or_else(|| {
+                far.then(|| ("point-differs", format!("this line is {:.4} mm from the curve", bound.mm)))
+            });
+            if let Some((id, message)) = refused {
                 self.within -= 1;
-                return Err(
-                    self.differs("point-differs", format!("this line is {:.4} mm from the curve", bound.mm))
-                );
+                return Err(self.differs(id, message));
             }
+            self.stretch_feed(feed, &stretches[stretch_of(stretches, high[0] - half)])?;
             found.deviation = found.deviation.max(bound);
             found.path_blocks += 1;
+            found.minutes += self.line_minutes(curve, &from, &to, feed);
             from = to;
         }
-        ends(curve, first, from[0], found);
-        self.leave(points);
+        let (start, end) = if log.back { (from[0], first) } else { (first, from[0]) };
+        ends(curve, start, end, found);
+        self.leave(run);
         Ok(())
     }
 
@@ -220,21 +367,32 @@ impl Cursor<'_> {
     fn through(
         &mut self,
         log: &Logarithmic,
+        stretches: &[Stretch],
         points: &WrittenPoints,
         tolerance: f64,
         found: &mut Found,
     ) -> Result<(), Diagnostics> {
         found.status = Status::PointsOnly;
+        let feed = self.written()?.feed;
+        self.stretch_feed(feed, &stretches[0])?;
         let asked = through_points(log, tolerance)
             .map_err(|error| self.differs("not-comparable", error.to_string()))?;
         if asked.len() != points.count() {
             let message = format!("the spline has {} points, not {}", points.count(), asked.len());
             return Err(self.differs("points-differ", message));
         }
+        let first = (log.curve.start(), log.curve.angle(log.curve.start()));
+        let mut asked: Vec<(f64, f64)> = std::iter::once(first).chain(asked).collect();
+        if log.back {
+            asked.reverse();
+        }
         let start = self.decimals.position(&points.start);
         let read = std::iter::once(start).chain(points.points().map(|units| self.decimals.position(&units)));
-        for (read, (x, a)) in read.zip(std::iter::once((0.0, 0.0)).chain(asked)) {
+        let mut from = start;
+        for (read, (x, a)) in read.zip(asked) {
             found.deviation = found.deviation.max(surface_distance(&log.curve, &read, x, a));
+            found.minutes += self.line_minutes(&log.curve, &from, &read, feed);
+            from = read;
         }
         found.path_blocks = points.count();
         self.advance();
@@ -280,7 +438,7 @@ fn surface_distance(curve: &LogCurve, read: &Position, x: f64, a: f64) -> Bound 
 /// Adds what a late start or an early end costs: how far the curve runs between where it was asked to end and where the
 /// path does.
 fn ends(curve: &LogCurve, start: f64, end: f64, found: &mut Found) {
-    let (mm, rad) = [(start, 0.0), (end, curve.end())]
+    let (mm, rad) = [(start, curve.start()), (end, curve.end())]
         .map(|(read, asked)| curve.run_bound(read, asked))
         .into_iter()
         .fold((0.0, 0.0), |most: (f64, f64), run| (most.0.max(run.0), most.1.max(run.1)));

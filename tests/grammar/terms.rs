@@ -8,6 +8,10 @@ use splinepost::units::Kind;
 /// What the words in question marks mean for one machine.
 pub(super) struct Terms {
     axes: Vec<(String, Kind)>,
+    /// Which of them wrap at 360 degrees.
+    wrapping: Vec<String>,
+    /// An axis and its home.
+    home: String,
     /// All lines of the machine file, to recognise.
     lines: Vec<Template>,
     /// Those that begin something, to generate.
@@ -20,17 +24,27 @@ const SIGNS: &[char] = &['A', 'z', '7', ' ', '.', '-', '=', '"', ';', '~', '(', 
 impl Terms {
     /// Without a machine: there are no axes and no lines.
     pub(super) fn plain() -> Terms {
-        Terms { axes: Vec::new(), lines: Vec::new(), beginnings: Vec::new() }
+        Terms {
+            axes: Vec::new(),
+            wrapping: Vec::new(),
+            home: String::new(),
+            lines: Vec::new(),
+            beginnings: Vec::new(),
+        }
     }
 
     /// For a machine.
     pub(super) fn of(machine: &Machine) -> Terms {
         let frame = &machine.frame;
-        let calls = [&frame.tool, &frame.spindle, &frame.tool_spindle];
-        let all = [&frame.header, &frame.footer].into_iter().chain(calls);
+        let calls =
+            [&frame.tool, &frame.spindle, &frame.tool_spindle, &frame.coolant, &frame.home, &frame.shift];
+        let all = [&frame.header, &frame.footer, &frame.close].into_iter().chain(calls);
+        let wrapping = machine.axes.as_slice().iter().filter(|(axis, _)| machine.limits(*axis).modulo);
         Terms {
             axes: machine.axes.as_slice().iter().map(|(axis, kind)| (axis.to_string(), *kind)).collect(),
-            lines: all.flatten().cloned().collect(),
+            wrapping: wrapping.map(|(axis, _)| axis.to_string()).collect(),
+            home: splinepost::dialect::parts::home_word(2, machine),
+            lines: all.flatten().chain([&frame.call, &frame.begin, &frame.end]).cloned().collect(),
             beginnings: calls.iter().filter_map(|lines| lines.first()).cloned().collect(),
         }
     }
@@ -52,15 +66,18 @@ impl Terms {
                     | "an axis of the machine"
                     | "an axis of the machine whose name is one letter"
                     | "a linear axis of the machine"
+                    | "an axis of the machine that wraps"
                     | "a line of the machine file"
             )
     }
 
     fn names(&self, words: &str) -> impl Iterator<Item = &str> {
         let (single, linear) = (words.ends_with("one letter"), words.contains("linear"));
+        let wraps = words.ends_with("wraps");
         self.axes
             .iter()
             .filter(move |(name, kind)| (!single || name.len() == 1) && (!linear || *kind == Kind::Linear))
+            .filter(move |(name, _)| !wraps || self.wrapping.contains(name))
             .map(|(name, _)| name.as_str())
     }
 
@@ -76,6 +93,7 @@ impl Terms {
             "tab" => one(&|c| c == '\t'),
             // The last line of a text may go without.
             "end of line" if text.is_empty() => vec![0],
+            "end of line" if text.starts_with("\r\n") => vec![2],
             "end of line" => one(&|c| c == '\n'),
             "any character of a line" => one(&|c| c != '\n' && c != '\r'),
             "a line of the machine file" => {
@@ -99,7 +117,13 @@ impl Terms {
             "end of line" => Some("\n".into()),
             "any character of a line" => random.pick(SIGNS).map(char::to_string),
             "a line of the machine file" => {
-                let values = [("name", "CONE10"), ("tool", "7"), ("rpm", "3000")];
+                let values = [
+                    ("name", "CONE10"),
+                    ("tool", "7"),
+                    ("rpm", "3000"),
+                    ("home", &self.home),
+                    ("words", "A90"),
+                ];
                 random.pick(&self.beginnings).map(|template| template.fill(&values))
             }
             _ => random.pick(&self.names(words).collect::<Vec<_>>()).map(|name| (*name).to_owned()),
@@ -112,6 +136,8 @@ fn is_filled_in(template: &Template, line: &str) -> bool {
     template.matched(line).is_some_and(|values| {
         values.iter().all(|(variable, value)| match variable.as_str() {
             "tool" => value.bytes().all(|b| b.is_ascii_digit()),
+            "label" | "i" | "number" => value.bytes().all(|b| b.is_ascii_digit()),
+            "home" | "words" => value.starts_with(|c: char| c.is_ascii_uppercase()),
             "rpm" => value.bytes().all(|b| b.is_ascii_digit() || b == b'.'),
             _ => true,
         })

@@ -16,6 +16,8 @@ pub(super) struct Path {
     pub(super) ends: Vec<Point>,
     /// Places along it, in order; none on a spline through points.
     pub(super) places: Vec<Point>,
+    /// F in force on these places, and how many there are by then.
+    pub(super) feeds: Vec<(usize, f64)>,
     /// Blocks; of G06.2, control points.
     pub(super) blocks: usize,
     /// Where A follows the arc length: how far X, Y, Z stray from even motion along a knot span, mm.
@@ -41,6 +43,7 @@ pub(super) fn paths(dialect: &str, text: &str) -> Result<Vec<Path>, String> {
 #[derive(Default)]
 struct Tool {
     at: [Option<f64>; 4],
+    feed: f64,
     approached: bool,
     open: Option<Path>,
     done: Vec<Path>,
@@ -75,8 +78,10 @@ impl Tool {
 
     /// Ends `blocks` blocks at `end`.
     fn arrive(&mut self, end: Point, blocks: usize) {
+        let feed = self.feed;
         let path = self.path();
         path.ends.push(end);
+        path.feeds.push((path.places.len(), feed));
         path.blocks += blocks;
         self.at = end.map(Some);
     }
@@ -141,6 +146,7 @@ fn sinumerik(text: &str, tool: &mut Tool) -> Result<(), String> {
         let mut target = [None; 4];
         let mut coefficients: [Vec<f64>; 4] = Default::default();
         let (mut pl, mut pw) = (None, 1.0);
+        let mut feed = None;
         let before = mode;
         for word in line.split_whitespace() {
             match word {
@@ -175,6 +181,8 @@ fn sinumerik(text: &str, tool: &mut Tool) -> Result<(), String> {
                     let digits = word.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(word.len());
                     if let Some(i) = axis(&word[..digits])? {
                         target[i] = Some(number(&word[digits..])?);
+                    } else if &word[..digits] == "F" {
+                        feed = Some(number(&word[digits..])?);
                     }
                 }
             }
@@ -182,6 +190,11 @@ fn sinumerik(text: &str, tool: &mut Tool) -> Result<(), String> {
         if before == Mode::Spline && mode != Mode::Spline {
             bspline(tool, &std::mem::take(&mut spline), upath)?;
         }
+        // A new F is not that of the spline before; a spline begins with its word.
+        if before == Mode::Spline && line.contains("BSPLINE") {
+            bspline(tool, &std::mem::take(&mut spline), upath)?;
+        }
+        tool.feed = feed.unwrap_or(tool.feed);
         if target.iter().all(Option::is_none) {
             continue;
         }
@@ -311,6 +324,8 @@ fn heidenhain(text: &str, tool: &mut Tool) -> Result<(), String> {
                 for word in &words[1..] {
                     if let Some(i) = axis(&word[..1])? {
                         target[i] = Some(number(&word[1..])?);
+                    } else if word.starts_with('F') && word != "FMAX" {
+                        tool.feed = number(&word[1..])?;
                     }
                 }
                 if words.iter().any(|word| word == "FMAX") { tool.rapid(&target) } else { tool.line(&target) }
@@ -333,7 +348,9 @@ fn spl(tool: &mut Tool, words: &[String]) -> Result<(), String> {
             *k[i].get_mut(power).ok_or_else(|| word.clone())? = Some(number(&rest[2..])?);
         } else if let Some(i) = axis(&word[..1])? {
             target[i] = Some(number(&word[1..])?);
-        } else if !word.starts_with(['F', 'M']) {
+        } else if let Some(feed) = word.strip_prefix('F') {
+            tool.feed = number(feed)?;
+        } else if !word.starts_with('M') {
             return Err(format!("`{word}`"));
         }
     }
@@ -382,6 +399,7 @@ fn mazak(text: &str, tool: &mut Tool) -> Result<(), String> {
         let line = line.split('(').next().unwrap_or_default().trim();
         let mut target = [None; 4];
         let (mut knot, mut weight) = (None, 1.0);
+        let mut feed = None;
         let before = mode;
         let mut rest = line.trim_start_matches('%');
         while !rest.is_empty() {
@@ -403,6 +421,7 @@ fn mazak(text: &str, tool: &mut Tool) -> Result<(), String> {
                 "P" if mode == Mode::Spline => nurbs.order = value as usize,
                 "K" => knot = Some(value),
                 "R" => weight = value,
+                "F" => feed = Some(value),
                 _ => {
                     if let Some(i) = axis(address)? {
                         target[i] = Some(value);
@@ -413,6 +432,7 @@ fn mazak(text: &str, tool: &mut Tool) -> Result<(), String> {
         if before == Mode::Spline && mode != Mode::Spline {
             g06_2(tool, &std::mem::take(&mut nurbs))?;
         }
+        tool.feed = feed.unwrap_or(tool.feed);
         let moves = target.iter().any(Option::is_some);
         match mode {
             Mode::None | Mode::Poly => {}

@@ -60,7 +60,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{Dialect, Form, Motion};
+use super::{Dialect, Form, Motion, Parameter, Round};
 
 /// The dialect.
 pub const DIALECT: Dialect = Dialect {
@@ -71,10 +71,13 @@ pub const DIALECT: Dialect = Dialect {
             name: "spl",
             form: Form::Polynomial { closing: true },
             about: "SPL: cubic polynomial blocks",
+            needs: "spline interpolation, option 2",
         },
-        Motion { name: "linear", form: Form::Lines, about: "L" },
+        Motion { name: "linear", form: Form::Lines, about: "L", needs: "" },
     ],
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
+    parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n} ={value}", word: |n| format!("Q{n}") },
+    round: Round::Step,
     write: write::write,
     read: read::read,
 };

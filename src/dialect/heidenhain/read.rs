@@ -21,7 +21,8 @@ use crate::decimal::{Decimal, Spelling};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Line, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
+use crate::dialect::block::{Line, Lines, MAX_DIAGNOSTICS, Numbering, block_number};
+use crate::dialect::frame::{Frame, Met};
 use crate::ir::{COEFFICIENTS, PolynomialBlock, Step, Written, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -46,7 +47,7 @@ fn magnitude(value: Decimal) -> Option<Decimal> {
 /// A coordinate as Klartext spells it: `+28.928`.
 fn signed(value: Decimal) -> String {
     let mut out = Vec::new();
-    value.write(&mut out, Spelling { point_always: false, sign_always: true });
+    value.write(&mut out, Spelling { point_always: false, sign_always: true, leading_zero: true });
     String::from_utf8(out).unwrap_or_default()
 }
 
@@ -104,10 +105,11 @@ struct Reader<'t, 'm> {
 /// Reads a program.
 pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Warned<Reading>, Diagnostics> {
     let mut frame = Frame::new(machine);
-    let mut numbering = Numbering::new(machine);
+    let lines = Lines::new(text, machine);
+    let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
         assembler: Assembler::new(machine, source),
-        lines: Lines::new(text).peekable(),
+        lines: lines.peekable(),
         run: None,
         gap: None,
         unmarked: None,
@@ -126,7 +128,13 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             if let Some((_, digits)) = number {
                 body = body[digits..].trim_ascii_start();
             }
-            numbering.meet(number.map(|(number, _)| number), line.range());
+            if number.is_some() || machine.text.number_comments || !body.starts_with(';') {
+                numbering.meet(number.map(|(number, _)| number), line.range());
+            }
+        }
+        if line.structure {
+            reader.flush();
+            continue;
         }
         let start = line.start + line.text.len() - body.len();
         let keyword = keyword(body);
@@ -152,9 +160,10 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     }
     reader.flush();
     reader.warn();
+    frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.header_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered };
+    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
     Ok(Warned { value: reading, warnings: warned.warnings })
 }
 
@@ -244,6 +253,15 @@ impl<'t> Reader<'t, '_> {
                     block.count += 1;
                 }
             }
+            Word::Step(letter, value) => self.step(letter, value, range, block),
+            Word::FeedParameter(_) if block.feed.is_some() || block.rapid => {
+                self.assembler.error("feed-twice", "a block has one feed", range);
+            }
+            Word::FeedParameter(number) => {
+                if let Some(value) = self.assembler.parameter(number, range.clone()) {
+                    self.word(&Word::Feed(value), range, block);
+                }
+            }
             Word::Coefficient(power, letter, value) => self.coefficient(power, letter, value, range, block),
             Word::Feed(_) | Word::Rapid if block.feed.is_some() || block.rapid => {
                 self.assembler.error("feed-twice", "a block has one feed", range);
@@ -259,6 +277,35 @@ impl<'t> Reader<'t, '_> {
             Word::Uncompensated => {}
             Word::Other(text) => self.other(text, range),
         }
+    }
+
+    /// A step of an axis that goes round past 360 degrees.
+    fn step(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let Some(axis) = self.assembler.letter(letter) else { return self.axis_unknown(letter, range) };
+        let text = format!("I{}{}", char::from(letter), signed(value));
+        if !self.assembler.wraps(axis) {
+            return self.other(&text, range);
+        }
+        if block.spline {
+            let message = format!("SPL says where it ends, not by how much it goes on, as in `{text}`");
+            return self.assembler.error("spline-step", message, range);
+        }
+        let value = self.assembler.coefficient(axis, value);
+        let to = value
+            .units(self.assembler.digits[axis])
+            .and_then(|step| self.assembler.position[axis]?.checked_add(step));
+        let Some(units) = to else {
+            let message =
+                format!("`{text}` goes on from a place that the text does not say, or has too many decimals");
+            return self.assembler.error("step-unknown", message, range);
+        };
+        if block.named().iter().any(|(other, _)| *other == axis) {
+            let message = format!("{} stands twice in this block", char::from(letter));
+            return self.assembler.error("axis-twice", message, range);
+        }
+        block.named[block.count] = (axis, units);
+        block.places[block.count] = (range.start, range.end);
+        block.count += 1;
     }
 
     fn axis_unknown(&mut self, letter: u8, range: Range<usize>) {
@@ -298,7 +345,7 @@ impl<'t> Reader<'t, '_> {
                 range,
             );
         }
-        *place = Some(value);
+        *place = Some(self.assembler.coefficient(axis, value));
         if block.coefficient_places[axis] == (0, 0) {
             block.coefficient_places[axis] = (range.start, range.end);
         }
@@ -313,9 +360,12 @@ impl<'t> Reader<'t, '_> {
         } else if bytes.first() == Some(&b'M') && digits(1) {
             ("m-function", format!("{text} is not read in a block of moves"))
         } else if bytes.contains(&b'Q') {
-            ("parameter", format!("Q parameters are not read, as in `{text}`"))
+            ("parameter", format!("Q parameters are read as feeds only, not as in `{text}`"))
         } else if bytes.first() == Some(&b'I') {
-            ("incremental", format!("incremental coordinates are not read, as in `{text}`"))
+            (
+                "incremental",
+                format!("steps are read of axes that wrap at 360 degrees only, not as in `{text}`"),
+            )
         } else {
             ("word-unknown", format!("`{text}` is not understood"))
         };

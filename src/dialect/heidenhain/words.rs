@@ -4,7 +4,7 @@ use crate::decimal::{Decimal, MAX_DIGITS, power_of_ten, read_decimal};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while1};
 use nom::character::complete::{char, digit1, one_of, space0};
-use nom::combinator::{opt, recognize, value};
+use nom::combinator::{map_res, opt, recognize, value};
 use nom::error::{Error, ErrorKind};
 use nom::sequence::{pair, preceded};
 use nom::{IResult, Parser};
@@ -18,6 +18,10 @@ const COEFFICIENT_DIGITS: u8 = 12;
 pub(super) enum Word<'t> {
     /// `X+30`
     Coordinate(u8, Decimal),
+    /// `IA+12`
+    Step(u8, Decimal),
+    /// `FQ1`
+    FeedParameter(u32),
     /// `K3X-4.688E-002`: which K, its axis, and its value where it can be held
     Coefficient(usize, u8, Option<Decimal>),
     /// `F200`
@@ -30,10 +34,20 @@ pub(super) enum Word<'t> {
     Other(&'t str),
 }
 
-/// `word = coordinate | coefficient | feed | rapid | compensation`, or [`other`]
+/// `word = coordinate | coefficient | feed | feed_parameter | rapid | step | compensation`, or [`other`]
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((coordinate, coefficient, feed, rapid, compensation, other)).parse(input)
+    alt((coordinate, coefficient, feed, feed_parameter, rapid, step, compensation, other)).parse(input)
+}
+
+/// `feed_parameter = "FQ", digits`
+fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
+    preceded(tag("FQ"), map_res(digit1, str::parse)).map(Word::FeedParameter).parse(input)
+}
+
+/// `step = "I", wrapping_axis, number`, or another axis
+fn step(input: &str) -> IResult<&str, Word<'_>> {
+    preceded(char('I'), (axis, number)).map(|(letter, value)| Word::Step(letter, value)).parse(input)
 }
 
 fn failed(input: &str) -> nom::Err<Error<&str>> {
@@ -178,20 +192,7 @@ mod tests {
         assert_eq!(word("F MAX M3"), Ok((" M3", Word::Rapid)));
         assert_eq!(word("FMAX"), Ok(("", Word::Rapid)));
         assert_eq!(word("F200.5;"), Ok((";", Word::Feed(Decimal::new(2005, 1)))));
-        for text in [
-            "RL",
-            "M3",
-            "FQ4",
-            "FAUTO",
-            "X+Q1",
-            "IX+1",
-            "K4X+1",
-            "K3X",
-            "E2",
-            "x+1",
-            "X+",
-            "K3X+1.5E+99999999999",
-        ] {
+        for text in ["RL", "M3", "FAUTO", "X+Q1", "K4X+1", "K3X", "E2", "x+1", "X+", "K3X+1.5E+99999999999"] {
             let first = word(text);
             assert!(matches!(first, Ok(("", Word::Other(_)) | ("E+99999999999", _))), "{text}: {first:?}");
         }

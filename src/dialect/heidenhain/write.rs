@@ -3,7 +3,8 @@
 
 use crate::decimal::{Decimal, Spelling};
 use crate::dialect::block::expected_size;
-use crate::dialect::modal::{Modal, Part, parts};
+use crate::dialect::modal::Modal;
+use crate::dialect::parts::{Part, parts};
 use crate::ir::{Decimals, PolynomialBlock, Units, Written, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, closing_coefficients};
@@ -42,20 +43,23 @@ impl Writer<'_> {
     }
 
     fn program(&mut self) {
-        for part in parts(&self.decimals.program, self.modal.machine) {
+        let (parts, feeds) = parts(self.decimals, self.modal.machine);
+        self.modal.parameters(&feeds);
+        for part in parts {
             match part {
                 Part::Fixed(line) => {
                     self.block(&line);
                     continue;
                 }
                 Part::Tool(..) | Part::Spindle => {}
+                Part::Home(axis) => self.modal.lose(axis),
+                Part::Shift(shifts) => self.modal.shift(shifts),
+                Part::Remark(text) => self.remark(text),
                 Part::Comment(text) => {
-                    self.modal.begin("");
-                    self.modal.text("; ");
-                    self.modal.text(text);
-                    self.modal.end();
+                    self.remark(text);
                     self.modal.forget();
                 }
+                Part::Body => self.modal.forget(),
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
@@ -69,6 +73,15 @@ impl Writer<'_> {
         }
     }
 
+    fn remark(&mut self, text: &str) {
+        if self.modal.machine.text.number_comments {
+            self.modal.begin("");
+        }
+        self.modal.text("; ");
+        self.modal.text(text);
+        self.modal.end();
+    }
+
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
         self.modal.begin("");
         self.modal.text("L ");
@@ -78,6 +91,7 @@ impl Writer<'_> {
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
+        self.modal.lines(points);
         for point in points.points() {
             self.modal.begin("");
             self.modal.text("L ");
@@ -86,6 +100,7 @@ impl Writer<'_> {
             self.modal.reached(&point);
             self.modal.end();
         }
+        self.modal.lines_end();
     }
 
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, feed: Option<Decimal>) {
@@ -103,7 +118,8 @@ impl Writer<'_> {
         for &i in &named {
             self.modal.axis(i, block.end[i]);
         }
-        self.modal.text("~\n");
+        self.modal.text("~");
+        self.modal.end_line();
         for (n, &i) in named.iter().enumerate() {
             // `check` lets no block pass without them.
             let k = closing_coefficients(block, i, start[i], self.decimals.digits[i]).unwrap_or_default();
@@ -112,11 +128,13 @@ impl Writer<'_> {
             for (power, k) in [(b'3', k[0]), (b'2', k[1]), (b'1', k[2])] {
                 self.modal.out.extend_from_slice(&[b' ', b'K', power]);
                 self.modal.text(name.as_str());
+                let k = self.modal.coefficient(i, k);
                 write_coefficient(&mut self.modal.out, k, self.modal.spelling);
             }
             self.modal.out.push(b' ');
             if n + 1 < named.len() {
-                self.modal.text("~\n");
+                self.modal.text("~");
+                self.modal.end_line();
             }
         }
         self.modal.feed(feed);
@@ -189,7 +207,7 @@ mod tests {
         write_coefficient(
             &mut out,
             Decimal::new(units, digits),
-            Spelling { point_always: false, sign_always: true },
+            Spelling { point_always: false, sign_always: true, leading_zero: true },
         );
         String::from_utf8(out).unwrap()
     }
@@ -211,7 +229,7 @@ mod tests {
     #[test]
     fn a_point_is_always_written_where_the_machine_asks() {
         let mut out = Vec::new();
-        let spelling = Spelling { point_always: true, sign_always: false };
+        let spelling = Spelling { point_always: true, sign_always: false, leading_zero: true };
         write_coefficient(&mut out, Decimal::new(30, 0), spelling);
         write_coefficient(&mut out, Decimal::new(-6, 0), spelling);
         assert_eq!(out, b"3.0E+1-6.");

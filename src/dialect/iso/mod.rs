@@ -57,7 +57,7 @@
 mod read;
 mod write;
 
-use super::{Dialect, Form, Motion};
+use super::{Dialect, Form, Motion, Parameter, Round};
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -68,15 +68,23 @@ pub const MAZAK: Dialect = Dialect {
     name: "mazak",
     about: "Mazak Matrix and Smooth, EIA/ISO",
     motions: &[
-        Motion { name: "g06.2", form: Form::Nurbs, about: "G06.2: control points, knots and weights" },
-        Motion { name: "linear", form: Form::Lines, about: "G1" },
+        Motion {
+            name: "g06.2",
+            form: Form::Nurbs,
+            about: "G06.2: control points, knots and weights",
+            needs: "nurbs interpolation",
+        },
+        Motion { name: "linear", form: Form::Lines, about: "G1", needs: "" },
         Motion {
             name: "g06.1",
             form: Form::Through(ThroughKind::Fine),
             about: "G06.1: fine spline through points",
+            needs: "fine spline interpolation",
         },
     ],
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
+    parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
+    round: Round::Place,
     write: write::write,
     read: read::read,
 };

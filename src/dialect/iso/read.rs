@@ -11,7 +11,8 @@ use super::{Offset, is_block};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostics, Warned};
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
+use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
+use crate::dialect::frame::{Frame, Met};
 use crate::dialect::{Form, Reading};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
 use crate::machine::Machine;
@@ -113,7 +114,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let offset = Offset::new(machine);
     let machine: &Machine = &offset.machine;
     let mut frame = Frame::new(machine);
-    let mut numbering = Numbering::new(machine);
+    let lines = Lines::new(text, machine);
+    let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
         assembler: Assembler::new(machine, source),
         motion: Motion::None,
@@ -126,7 +128,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         work_offset: None,
         warned_left_out: false,
     };
-    for line in Lines::new(text) {
+    for line in lines {
         let mut body = line.text.trim_ascii_start();
         if body.is_empty() {
             continue;
@@ -135,8 +137,12 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         if let Some((_, digits)) = number {
             body = body[1 + digits..].trim_ascii_start();
         }
-        if number.is_some() || is_block(body) {
+        if number.is_some() || is_block(body) || (machine.text.number_comments && body.starts_with('(')) {
             numbering.meet(number.map(|(number, _)| number), line.range());
+        }
+        if line.structure {
+            reader.flush();
+            continue;
         }
         let start = line.start + line.text.len() - body.len();
         let span = Span::new(source, line.range());
@@ -166,9 +172,10 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
     }
     reader.flush();
+    frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.header_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered };
+    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
     Ok(Warned { value: reading, warnings: warned.warnings })
 }
 
@@ -209,6 +216,12 @@ impl Reader<'_> {
                         None => self.address(letter, value, range, &mut block),
                     }
                 }
+                Word::FeedParameter(number) => {
+                    words += 1;
+                    if let Some(value) = self.assembler.parameter(number, range.clone()) {
+                        self.address(b'F', value, range, &mut block);
+                    }
+                }
                 Word::Assignment(name, value) => {
                     words += 1;
                     match self.assembler.axis(name) {
@@ -240,6 +253,24 @@ impl Reader<'_> {
     fn remark(&mut self, text: String, span: Span) {
         self.assembler.step(Step::Comment(text), span);
         self.offset_again = self.offset_tool;
+    }
+
+    /// An axis that wraps takes the short way to its place.
+    fn short_way(&mut self, block: &mut Block) {
+        for at in 0..block.count {
+            let (axis, units) = block.named[at];
+            if !self.assembler.wraps(axis) || self.assembler.position[axis].is_none() {
+                continue;
+            }
+            match self.assembler.nearest(axis, units) {
+                Some(nearest) => block.named[at].1 = nearest,
+                None => {
+                    let name = self.assembler.machine.axes.name(axis);
+                    let message = format!("{name} turns by 180 degrees here, and both ways are as long");
+                    self.error("short-way", message, block.places[at]..block.places[at] + 1);
+                }
+            }
+        }
     }
 
     fn unreadable(&mut self, rest: &str, at: usize) {
@@ -385,7 +416,10 @@ impl Reader<'_> {
             Motion::None if self.assembler.diagnostics.has_errors() => {}
             Motion::None => self.error("motion-missing", "a move before any G0, G1 or spline", whole()),
             Motion::Rapid => self.assembler.rapid(block.named(), span),
-            Motion::Line => self.assembler.line(block.named(), line, span),
+            Motion::Line => {
+                self.short_way(&mut block);
+                self.assembler.line(block.named(), line, span);
+            }
             Motion::Through => self.through_block(&block, line, span),
             Motion::Nurbs => {} // met above
         }

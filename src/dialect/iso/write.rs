@@ -3,7 +3,8 @@
 use super::{Offset, is_block};
 use crate::decimal::{Decimal, write_units};
 use crate::dialect::block::expected_size;
-use crate::dialect::modal::{Modal, Part, ToolLines, parts};
+use crate::dialect::modal::Modal;
+use crate::dialect::parts::{Part, ToolLines, parts};
 use crate::ir::{Decimals, Written, WrittenNurbs, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
@@ -43,7 +44,7 @@ struct Writer<'a> {
 impl Writer<'_> {
     /// A line of fixed words.
     fn line(&mut self, text: &str) {
-        if is_block(text) {
+        if is_block(text) || (text.starts_with('(') && self.modal.machine.text.number_comments) {
             self.modal.begin("N");
         }
         self.modal.text(text);
@@ -51,7 +52,9 @@ impl Writer<'_> {
     }
 
     fn program(&mut self) {
-        for part in parts(&self.decimals.program, self.modal.machine) {
+        let (parts, feeds) = parts(self.decimals, self.modal.machine);
+        self.modal.parameters(&feeds);
+        for part in parts {
             match &part {
                 Part::Fixed(line) => self.line(line),
                 Part::Tool(tool, lines) => {
@@ -63,8 +66,19 @@ impl Writer<'_> {
                     self.offset_due = self.offset_tool;
                 }
                 Part::Spindle => {}
+                Part::Home(axis) => {
+                    self.modal.lose(*axis);
+                    self.modal.motion = None;
+                    self.offset_due = self.offset_tool;
+                }
+                Part::Shift(shifts) => self.modal.shift(shifts),
+                Part::Remark(text) => self.line(&format!("({text})")),
                 Part::Comment(text) => {
                     self.line(&format!("({text})"));
+                    self.modal.forget();
+                    self.offset_due = self.offset_tool;
+                }
+                Part::Body => {
                     self.modal.forget();
                     self.offset_due = self.offset_tool;
                 }
@@ -83,8 +97,10 @@ impl Writer<'_> {
                 }
             }
             self.through = match &part {
-                Part::Comment(_) | Part::Fixed(_) => self.through,
-                Part::Tool(..) | Part::Spindle | Part::Rapid(_) => false,
+                Part::Comment(_) | Part::Remark(_) | Part::Fixed(_) | Part::Shift(_) | Part::Body => {
+                    self.through
+                }
+                Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::Rapid(_) => false,
                 Part::Cut(cut) => matches!(cut.curve, Written::Through(..)),
             };
         }
@@ -93,7 +109,7 @@ impl Writer<'_> {
     fn knot(&mut self, nurbs: &WrittenNurbs, units: i64) {
         self.modal.out.push(b'K');
         write_units(&mut self.modal.out, units, nurbs.knot_digits, self.modal.spelling);
-        self.modal.out.push(b' ');
+        self.modal.gap();
     }
 
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
@@ -109,6 +125,7 @@ impl Writer<'_> {
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
+        self.modal.lines(points);
         for point in points.points() {
             self.modal.begin("N");
             self.modal.motion("G1");
@@ -117,6 +134,7 @@ impl Writer<'_> {
             self.modal.reached(&point);
             self.modal.end();
         }
+        self.modal.lines_end();
     }
 
     /// The axes that a curve moves; the first where it moves none, since a block needs one.
@@ -135,14 +153,14 @@ impl Writer<'_> {
                 self.modal.motion("G06.2");
                 self.modal.out.push(b'P');
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree + 1));
-                self.modal.out.push(b' ');
+                self.modal.gap();
             }
             self.knot(nurbs, *knot);
             self.modal.axes(&named, point);
             if let Some(weight) = nurbs.weights.as_ref().and_then(|weights| weights.get(i)) {
                 self.modal.out.push(b'R');
                 weight.write(&mut self.modal.out, self.modal.spelling);
-                self.modal.out.push(b' ');
+                self.modal.gap();
             }
             self.modal.feed(feed);
             self.modal.reached(point);
@@ -192,7 +210,9 @@ mod tests {
 
     /// The machine as built in, and one whose splines move A.
     fn with_a() -> Machine {
-        machine("extends = \"mazak\"\n[spline]\naxes = [\"X\", \"Y\", \"Z\", \"A\"]\n")
+        machine(
+            "extends = \"mazak\"\n[feed]\nrotary = \"free\"\n[spline]\naxes = [\"X\", \"Y\", \"Z\", \"A\"]\n",
+        )
     }
 
     fn compile(input: &str, machine: &Machine, motion: Option<&str>) -> Result<Output, Failure> {
@@ -302,7 +322,8 @@ mod tests {
 
     #[test]
     fn curves_in_a_row_stay_apart() {
-        let machine = machine("extends = \"mazak\"\n[program]\nheader = [\"({name})\"]\nfooter = []\n");
+        let machine =
+            machine("extends = \"mazak\"\n[program]\nheader = [\"({name})\"]\nfooter = []\nclose = []\n");
         let machine = machine.with_axes(&crate::units::Axes::xyza()).unwrap();
         let text = "(ROW)\nG0 X0. Y0. Z0. A0.\nG06.2 P3 K0. X0. Y0. R1. F9.\nK0. X1. Y0. R0.7071\nK0. X1. Y1. R1.\nK1.\nK1.\nK1.\n\
             G06.2 P2 K0. X1. Y1.\nK0. X5. Y2.\nK1.5\nK1.5\nG06.1 X6. Y3.\nX7. Y1.\n(NEXT)\nG1\nG06.1 X8. Y2. F9.\nX9. Y2.\n\
@@ -325,7 +346,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_is_too_strange(text in "[GXYZAKRPFHOQN0-9.()=/% ;\\-\n]{0,200}|\\PC{0,80}") {
-            let machine = machine("extends = \"mazak\"\n[program]\nheader = []\nfooter = []\n");
+            let machine = machine("extends = \"mazak\"\n[program]\nheader = []\nfooter = []\nclose = []\n");
             let _ = (machine.dialect.read)(&text, SourceId::INPUT, &machine);
         }
 
@@ -336,7 +357,7 @@ mod tests {
                 "G06.1 X1. Y1.\n", "X2. Y2.\n", "G1\n", "G0 X0. Y0. Z0. A0.\nG06.2 P2 K0. X0. A0.\nK0. X3. A5.\nK3.\nK3.\n",
                 "G0 X0.\nG06.2 K0. X0. R2.\nK0. X1.\nK0. X2. R3.\nK0. X3.\nK1. X4.\nK2.\nK2.\nK2.\nK2.\nG1\n",
             ]), 0..20)) {
-            let machine = machine("extends = \"mazak\"\n[axis.A]\nkind = \"linear\"\n[program]\nheader = []\nfooter = []\n");
+            let machine = machine("extends = \"mazak\"\n[axis.A]\nkind = \"linear\"\n[program]\nheader = []\nfooter = []\nclose = []\n");
             let start = "G0 X0. Y0. Z0. A0.\nG1 F5.\n";
             let text = format!("(START)\n{start}{}", words.concat());
             if let Ok(reading) = (machine.dialect.read)(&text, SourceId::INPUT, &machine) {

@@ -53,7 +53,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{Dialect, Form, Motion};
+use super::{Dialect, Form, Motion, Parameter, Round};
 use crate::ir::ThroughKind;
 
 /// The dialect.
@@ -61,24 +61,38 @@ pub const DIALECT: Dialect = Dialect {
     name: "sinumerik",
     about: "Siemens Sinumerik 840D, 840D sl, ONE",
     motions: &[
-        Motion { name: "poly", form: Form::Polynomial { closing: false }, about: "POLY: polynomial blocks" },
-        Motion { name: "bspline", form: Form::Nurbs, about: "BSPLINE: control points and knot distances" },
-        Motion { name: "linear", form: Form::Lines, about: "G1" },
+        Motion {
+            name: "poly",
+            form: Form::Polynomial { closing: false },
+            about: "POLY: polynomial blocks",
+            needs: "polynomial interpolation",
+        },
+        Motion {
+            name: "bspline",
+            form: Form::Nurbs,
+            about: "BSPLINE: control points and knot distances",
+            needs: "spline interpolation",
+        },
+        Motion { name: "linear", form: Form::Lines, about: "G1", needs: "" },
         Motion {
             name: "aspline",
             form: Form::Through(ThroughKind::Akima),
             about: "ASPLINE: Akima spline through points",
+            needs: "spline interpolation",
         },
         Motion {
             name: "cspline",
             form: Form::Through(ThroughKind::Cubic),
             about: "CSPLINE: cubic spline through points",
+            needs: "spline interpolation",
         },
     ],
     naming: (
         "1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter",
         is_name,
     ),
+    parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
+    round: Round::Shortest,
     write: write::write,
     read: read::read,
 };

@@ -2,12 +2,15 @@
 //!
 //! A word that is not understood is an error at its place.
 
+mod state;
+
 use super::words::{Word, word};
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
-use crate::dialect::block::{Frame, Lines, MAX_DIAGNOSTICS, Met, Numbering, block_number};
+use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
+use crate::dialect::frame::{Frame, Met};
 use crate::ir::{
     COEFFICIENTS, Decimals, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
     WrittenPolynomial,
@@ -79,7 +82,8 @@ struct Reader<'m> {
 /// Reads a program.
 pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Warned<Reading>, Diagnostics> {
     let mut frame = Frame::new(machine);
-    let mut numbering = Numbering::new(machine);
+    let lines = Lines::new(text, machine);
+    let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
         assembler: Assembler::new(machine, source),
         motion: Motion::None,
@@ -88,21 +92,26 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         splinepath: Vec::new(),
         run: None,
     };
-    for line in Lines::new(text) {
+    for line in lines {
         let indent = line.text.len() - line.text.trim_ascii_start().len();
         let mut body = &line.text[indent..];
         let mut start = line.start + indent;
         if body.is_empty() {
             continue;
         }
-        if !body.starts_with(';') {
-            let number = body.strip_prefix('N').and_then(block_number);
-            if let Some((_, digits)) = number {
-                let rest = body[1 + digits..].trim_ascii_start();
-                start += body.len() - rest.len();
-                body = rest;
-            }
+        let number = body.strip_prefix('N').and_then(block_number);
+        if let Some((_, digits)) = number {
+            let rest = body[1 + digits..].trim_ascii_start();
+            start += body.len() - rest.len();
+            body = rest;
+        }
+        if number.is_some() || machine.text.number_comments || !body.starts_with(';') {
             numbering.meet(number.map(|(number, _)| number), line.range());
+        }
+        if line.structure {
+            reader.flush();
+            reader.section();
+            continue;
         }
         let span = Span::new(source, line.range());
         // A block of one axis letter and a digit is a move; only others can be lines of the frame.
@@ -119,9 +128,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
         if let Some(comment) = body.strip_prefix(';') {
             reader.flush();
-            // A section starts: what its curves need must be said in it, so that it can be restarted.
-            reader.upath = false;
-            reader.splinepath.clear();
+            reader.section();
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
@@ -132,15 +139,22 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         }
     }
     reader.flush();
+    frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.header_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered };
+    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
     Ok(Warned { value: reading, warnings: warned.warnings })
 }
 
 impl Reader<'_> {
     fn is_cutting(&self) -> bool {
         self.motion != Motion::None
+    }
+
+    /// A section starts: what its curves need must be said in it, so that it can be restarted.
+    fn section(&mut self) {
+        self.upath = false;
+        self.splinepath.clear();
     }
 
     /// One block: its words, then the move that they make.
@@ -195,6 +209,12 @@ impl Reader<'_> {
                     self.address(name, value, range, block);
                 }
             }
+            Word::FeedParameter(number) => {
+                if let Some(value) = self.assembler.parameter(number, range.clone()) {
+                    self.address("F", value, range, block);
+                }
+            }
+            Word::Shortest(name, value) => self.shortest(name, value, range, block),
             Word::Polynomial(name, values) => {
                 let Some(axis) = self.assembler.axis(name) else {
                     return self.assembler.error(
@@ -212,7 +232,9 @@ impl Reader<'_> {
                 }
                 if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
                     self.name_axis(block, axis, units, range);
-                    block.coefficients[axis][..values.len() - 1].copy_from_slice(&values[1..]);
+                    for (own, a) in block.coefficients[axis].iter_mut().zip(&values[1..]) {
+                        *own = self.assembler.coefficient(axis, *a);
+                    }
                     block.has_polynomial = true;
                 }
             }
@@ -279,42 +301,6 @@ impl Reader<'_> {
             ("SD", Some(degree @ 2..=3)) => self.degree = degree as usize,
             ("SD", _) => self.assembler.error("degree-range", "SD is 2 or 3", range),
             _ => self.assembler.error("word-unknown", format!("`{name}{value}` is not understood"), range),
-        }
-    }
-
-    fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
-        match keyword {
-            "POLY" => self.set_motion(Motion::Poly),
-            "BSPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Bspline;
-            }
-            "ASPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Through(ThroughKind::Akima);
-            }
-            "CSPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Through(ThroughKind::Cubic);
-            }
-            "UPATH" | "SPATH" => {
-                self.flush();
-                self.upath = keyword == "UPATH";
-            }
-            "BAUTO" | "BNAT" | "BTAN" => self.end_condition(keyword, true, range),
-            "EAUTO" | "ENAT" | "ETAN" => self.end_condition(keyword, false, range),
-            _ if STATE_CODES.contains(&keyword) => {}
-            _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
-        }
-    }
-
-    /// The IR has no place for end conditions: they are the machine file's.
-    fn end_condition(&mut self, word: &str, begin: bool, range: Range<usize>) {
-        let spline = &self.assembler.machine.spline;
-        let expected = if begin { &spline.begin } else { &spline.end };
-        if word != expected {
-            let message = format!("the machine file has the end condition {expected} here, not {word}");
-            self.assembler.error("end-condition", message, range);
         }
     }
 

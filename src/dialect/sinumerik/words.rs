@@ -4,8 +4,8 @@
 use crate::decimal::{Decimal, read_decimal};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while, take_while1};
-use nom::character::complete::{char, space0};
-use nom::combinator::{opt, recognize};
+use nom::character::complete::{char, digit1, space0};
+use nom::combinator::{map_res, opt, recognize};
 use nom::error::{Error, ErrorKind};
 use nom::multi::separated_list1;
 use nom::sequence::{delimited, preceded, terminated};
@@ -16,6 +16,10 @@ use nom::{IResult, Parser};
 pub(super) enum Word<'t> {
     /// `X30`, `X1=10`, `PL=30`
     Address(&'t str, Decimal),
+    /// `F=R1`
+    FeedParameter(u32),
+    /// `A=DC(5)`
+    Shortest(&'t str, Decimal),
     /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`
     Polynomial(&'t str, Vec<Decimal>),
     /// `SPLINEPATH(1,X,Y)`
@@ -24,9 +28,24 @@ pub(super) enum Word<'t> {
     Keyword(&'t str),
 }
 
-/// `word = address | polynomial | assignment | call | keyword`
+/// `word = address | polynomial | feed_parameter | shortest | assignment | call | keyword`
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((address, polynomial, assignment, call, keyword)).parse(input)
+    alt((address, polynomial, feed_parameter, shortest, assignment, call, keyword)).parse(input)
+}
+
+/// `feed_parameter = "F", equals, "R", digits`
+fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
+    preceded((char('F'), space0, char('='), space0, char('R')), map_res(digit1, str::parse))
+        .map(Word::FeedParameter)
+        .parse(input)
+}
+
+/// `shortest = wrapping_axis, equals, "DC(", item, ")"`, or another axis
+fn shortest(input: &str) -> IResult<&str, Word<'_>> {
+    let value = delimited((tag("DC("), space0), number, (space0, char(')')));
+    (terminated(name, (space0, char('='), space0)), value)
+        .map(|(axis, value)| Word::Shortest(axis, value))
+        .parse(input)
 }
 
 /// `address = ( axis_letter | "F" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1

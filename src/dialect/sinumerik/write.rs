@@ -1,7 +1,8 @@
 //! Spells a legal program for Sinumerik.
 
 use crate::decimal::{Decimal, Spelling, write_units};
-use crate::dialect::modal::{Modal, Part, parts};
+use crate::dialect::modal::Modal;
+use crate::dialect::parts::{Part, parts};
 use crate::ir::{Decimals, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
@@ -27,26 +28,40 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A block of fixed words; a comment has no number.
+    /// A block of fixed words.
     fn block(&mut self, text: &str) {
-        if !text.starts_with(';') {
+        if self.modal.machine.text.number_comments || !text.starts_with(';') {
             self.modal.begin("N");
         }
         self.modal.text(text);
         self.modal.end();
     }
 
+    /// Nothing holds any more.
+    fn forget(&mut self) {
+        self.modal.forget();
+        self.upath = false;
+        self.splinepath.clear();
+    }
+
     fn program(&mut self) {
-        for part in parts(&self.decimals.program, self.modal.machine) {
+        let (parts, feeds) = parts(self.decimals, self.modal.machine);
+        self.modal.parameters(&feeds);
+        for part in parts {
             match part {
                 Part::Fixed(line) => self.block(&line),
                 Part::Tool(..) | Part::Spindle => {}
+                Part::Home(axis) => {
+                    self.modal.lose(axis);
+                    self.modal.motion = None;
+                }
+                Part::Shift(shifts) => self.modal.shift(shifts),
+                Part::Remark(text) => self.block(&format!("; {text}")),
                 Part::Comment(text) => {
                     self.block(&format!("; {text}"));
-                    self.modal.forget();
-                    self.upath = false;
-                    self.splinepath.clear();
+                    self.forget();
                 }
+                Part::Body => self.forget(),
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
@@ -66,6 +81,7 @@ impl Writer<'_> {
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
+        self.modal.lines(points);
         for point in points.points() {
             self.modal.begin("N");
             self.modal.motion("G1");
@@ -74,6 +90,7 @@ impl Writer<'_> {
             self.modal.reached(&point);
             self.modal.end();
         }
+        self.modal.lines_end();
     }
 
     /// UPATH, where a rotary axis moves; SPLINEPATH, where a spline group is to have it.
@@ -113,16 +130,17 @@ impl Writer<'_> {
                 self.modal.text(name.as_str());
                 self.modal.text("]=(");
                 let spelling = self.modal.spelling;
-                write_units(&mut self.modal.out, block.end[i], self.decimals.digits[i], spelling);
+                let end = self.modal.counted(i, block.end[i]);
+                write_units(&mut self.modal.out, end, self.decimals.digits[i], spelling);
                 for a in &coefficients[..count] {
                     self.modal.out.push(b',');
-                    a.write(&mut self.modal.out, spelling);
+                    self.modal.coefficient(i, *a).write(&mut self.modal.out, spelling);
                 }
                 self.modal.text(") ");
             }
             self.modal.text("PL=");
             block.pl.write(&mut self.modal.out, Spelling::PLAIN);
-            self.modal.out.push(b' ');
+            self.modal.gap();
             self.modal.feed(feed);
             self.modal.reached(&block.end);
             self.modal.end();
@@ -140,17 +158,17 @@ impl Writer<'_> {
                 self.modal.motion("BSPLINE");
                 self.modal.text("SD=");
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree));
-                self.modal.out.push(b' ');
+                self.modal.gap();
             }
             self.modal.axes(&moved, point);
             self.modal.text("PL=");
             let distance = nurbs.knots[j + 2] - nurbs.knots[j + 1];
             write_units(&mut self.modal.out, distance, nurbs.knot_digits, Spelling::PLAIN);
-            self.modal.out.push(b' ');
+            self.modal.gap();
             if let Some(weights) = &nurbs.weights {
                 self.modal.text("PW=");
                 weights[j].write(&mut self.modal.out, Spelling::PLAIN);
-                self.modal.out.push(b' ');
+                self.modal.gap();
             }
             self.modal.feed(feed);
             self.modal.reached(point);

@@ -8,6 +8,7 @@ use toml::Spanned;
 /// The keys of a cutter file.
 pub const KEYS: &[Key] = &[
     Key::value("name"),
+    Key::value("number"),
     Key::table(
         "cutter",
         &[
@@ -36,12 +37,23 @@ pub const KEYS: &[Key] = &[
         "process",
         &[
             Key::value("feed"),
+            Key::value("feed_along"),
+            Key::value("approach_feed"),
+            Key::value("return_feed"),
             Key::table("retract", &[Key::value("axis"), Key::value("to")]),
             Key::value("spindle"),
+            Key::value("coolant"),
             Key::value("tool"),
-            Key::table("infeed", &[Key::value("axis"), Key::value("step"), Key::value("passes")]),
+            Key::value("travel"),
+            Key::value("run_in"),
+            Key::value("run_out"),
+            Key::table(
+                "infeed",
+                &[Key::value("axis"), Key::value("sign"), Key::value("step"), Key::value("passes")],
+            ),
             Key::value("spark_out"),
             Key::value("order"),
+            Key::table("correction", &[Key::value("axis"), Key::value("value")]),
         ],
     ),
 ];
@@ -53,6 +65,9 @@ pub(super) struct File {
     /// The program's name, 1 to 64 printable ASCII characters; each control has rules of its own. Default CUTTER.
     #[schemars(with = "Option<String>")]
     pub(super) name: Option<Spanned<String>>,
+    /// The program's number, 1 to 9999, where the control wants one. Default 1.
+    #[schemars(with = "Option<i64>")]
+    pub(super) number: Option<Spanned<i64>>,
     /// The cutter as its drawing states it.
     #[schemars(with = "Option<CutterTable>")]
     pub(super) cutter: Option<Spanned<CutterTable>>,
@@ -119,18 +134,38 @@ pub(super) struct InterpolationTable {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProcessTable {
-    /// mm/min along the path of X Y Z.
+    /// mm/min along what feed_along says; degrees/min along A.
     #[schemars(with = "Option<f64>")]
     pub(super) feed: Option<Spanned<f64>>,
+    /// What feed is a speed of. path (default): X Y Z together; edge: the cutting edge at the surface; X; A: its degrees.
+    #[schemars(with = "Option<String>", extend("enum" = ["path", "edge", "X", "A"]))]
+    pub(super) feed_along: Option<Spanned<String>>,
+    /// mm/min of the move to the work. Default: what feed makes along X Y Z where the path begins.
+    #[schemars(with = "Option<f64>")]
+    pub(super) approach_feed: Option<Spanned<f64>>,
+    /// mm/min of the linear axes on their way back to the start of a path. Default: rapid traverse.
+    #[schemars(with = "Option<f64>")]
+    pub(super) return_feed: Option<Spanned<f64>>,
     /// Where it is clear, reached before X returns and before A turns.
     #[schemars(with = "Option<RetractTable>")]
     pub(super) retract: Option<Spanned<RetractTable>>,
     /// rev/min; without it no spindle word is written.
     #[schemars(with = "Option<f64>")]
     pub(super) spindle: Option<Spanned<f64>>,
+    /// Whether the coolant flows. Default false.
+    pub(super) coolant: Option<bool>,
     /// The tool's number. Default 1.
     #[schemars(with = "Option<i64>")]
     pub(super) tool: Option<Spanned<i64>>,
+    /// from-D1 (default): X grows along a path; to-D1: it falls.
+    #[schemars(with = "Option<String>", extend("enum" = ["from-D1", "to-D1"]))]
+    pub(super) travel: Option<Spanned<String>>,
+    /// How far a path begins before the flute, on the extended curve, mm along X. Default 0.
+    #[schemars(with = "Option<f64>")]
+    pub(super) run_in: Option<Spanned<f64>>,
+    /// How far it goes on behind the flute, mm along X. Default 0.
+    #[schemars(with = "Option<f64>")]
+    pub(super) run_out: Option<Spanned<f64>>,
     /// Rough passes before the finishing one.
     #[schemars(with = "Option<InfeedTable>")]
     pub(super) infeed: Option<Spanned<InfeedTable>>,
@@ -140,6 +175,21 @@ pub(super) struct ProcessTable {
     /// flute (default): all passes of a flute, then the next; pass: a pass on all flutes, then the next.
     #[schemars(with = "Option<String>", extend("enum" = ["flute", "pass"]))]
     pub(super) order: Option<Spanned<String>>,
+    /// A parameter of the program that shifts all paths, set to its value: zero, or clear of the work for an air cut.
+    #[schemars(with = "Option<CorrectionTable>")]
+    pub(super) correction: Option<Spanned<CorrectionTable>>,
+}
+
+/// A parameter that shifts all paths.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CorrectionTable {
+    /// Y or Z.
+    #[schemars(with = "Option<String>", extend("enum" = ["Y", "Z"]))]
+    pub(super) axis: Option<Spanned<String>>,
+    /// mm; default 0.
+    #[schemars(with = "Option<f64>")]
+    pub(super) value: Option<Spanned<f64>>,
 }
 
 /// Rough passes: the path shifted away from the finished one, step by step.
@@ -149,7 +199,10 @@ pub(super) struct InfeedTable {
     /// Y or Z.
     #[schemars(with = "Option<String>", extend("enum" = ["Y", "Z"]))]
     pub(super) axis: Option<Spanned<String>>,
-    /// mm from pass to pass; its sign says on which side the stock is.
+    /// 1 (default) or -1: on which side of the finished path the stock is; a negative step says the same.
+    #[schemars(with = "Option<i64>", extend("enum" = [1, -1]))]
+    pub(super) sign: Option<Spanned<i64>>,
+    /// mm from pass to pass.
     #[schemars(with = "Option<f64>")]
     pub(super) step: Option<Spanned<f64>>,
     /// How many rough passes.

@@ -4,19 +4,24 @@
 //!
 //! | step | move |
 //! |---|---|
+//! | correct | the work offset that a correction is |
 //! | retract | the retract axis to clear air, at rapid, alone |
-//! | return | the other linear axes to the start of the path, one at a time |
-//! | index | A to the flute |
+//! | position | the other linear axes to the start of the path, one at a time, at rapid |
+//! | index | A to the flute, at rapid |
 //! | approach | the retract axis to the start of the path, at feed |
-//! | path | the flute |
+//! | path | the flute, with what it runs before and behind |
 //! | retract | the retract axis to clear air, at rapid |
+//! | return | the other linear axes to the start of the path, where that is asked for at feed |
+//!
+//! Before the tool change and after the last section the retract axis goes home in machine coordinates.
 
 use super::{CutterJob, Infeed, Order, Process, parse};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Step};
+use crate::geom::logcurve::Measure;
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Shift, Step};
 use crate::source::{Source, SourceId};
-use crate::units::{Axes, Position};
+use crate::units::{Axes, Kind, Position};
 
 /// Reads a cutter file as what a program is to be made of.
 ///
@@ -62,22 +67,24 @@ impl CutterJob {
     /// Rough passes, the finishing pass, spark-out.
     fn passes(&self) -> Vec<Pass> {
         let Process { infeed, spark_out, .. } = self.process;
+        let correction = self.correction();
         let mut passes = Vec::new();
         if let Some(Infeed { axis, step, passes: rough }) = infeed {
             let name = Axes::xyza().name(axis);
             for i in 1..=rough {
-                let mut shift = [0.0; 2];
-                shift[axis - 1] = step * f64::from(rough + 1 - i);
-                let stock = Decimal::round(shift[axis - 1], 4).unwrap_or_default();
+                let left = step * f64::from(rough + 1 - i);
+                let mut shift = correction;
+                shift[axis - 1] += left;
+                let stock = Decimal::round(left, 4).unwrap_or_default();
                 passes.push(Pass { shift, name: format!(", ROUGH {i} OF {rough}, {name} {stock}") });
             }
         }
         let alone = passes.is_empty() && spark_out == 0;
         let name = if alone { String::new() } else { ", FINISH".to_owned() };
-        passes.push(Pass { shift: [0.0; 2], name });
+        passes.push(Pass { shift: correction, name });
         passes.extend(
             (1..=spark_out)
-                .map(|i| Pass { shift: [0.0; 2], name: format!(", SPARK-OUT {i} OF {spark_out}") }),
+                .map(|i| Pass { shift: correction, name: format!(", SPARK-OUT {i} OF {spark_out}") }),
         );
         passes
     }
@@ -90,7 +97,7 @@ impl CutterJob {
         for flute in &self.flutes {
             for pass in self.passes() {
                 let curve = flute.curve.with_shift(pass.shift);
-                for x in [0.0, flute_end(flute)] {
+                for x in [curve.start(), flute_end(flute)] {
                     let at = curve.position(x)[axis];
                     reach = (reach.0.min(at), reach.1.max(at));
                 }
@@ -119,11 +126,16 @@ impl CutterJob {
     pub fn intent(&self) -> Intent {
         let mut steps = Vec::new();
         let mut add = |step: Step<f64, Curve>| steps.push(Located { step, span: self.span });
-        if self.process.retract.is_some() {
+        let home = self.process.retract.map(|(axis, _)| axis);
+        if let Some(axis) = home {
+            add(Step::Home(axis));
             add(Step::Tool(self.process.tool));
         }
         if let Some(rpm) = self.process.spindle {
             add(Step::Spindle(rpm));
+        }
+        if self.process.coolant {
+            add(Step::Coolant);
         }
         let passes = self.passes();
         match self.process.order {
@@ -142,36 +154,79 @@ impl CutterJob {
                 }
             }
         }
+        if let Some(axis) = home {
+            if let Some((axis, _)) = self.process.correction {
+                add(Step::Shift(vec![Shift { axis, to: 0.0, parameter: false }]));
+            }
+            add(Step::Home(axis));
+        }
         Intent {
-            program: Program { name: self.name.clone(), axes: Axes::xyza(), steps },
+            program: Program { name: self.name.clone(), number: self.number, axes: Axes::xyza(), steps },
             tolerance: self.tolerance,
             name_span: self.name_span,
         }
     }
 
+    /// How far the correction shifts all paths in Y and Z, mm.
+    fn correction(&self) -> [f64; 2] {
+        let mut shift = [0.0; 2];
+        if let Some((axis, value)) = self.process.correction {
+            shift[axis - 1] = value;
+        }
+        shift
+    }
+
     /// One pass over one flute.
     fn section(&self, flute: usize, pass: &Pass, add: &mut impl FnMut(Step<f64, Curve>)) {
         let axes = Axes::xyza();
-        let Process { feed, retract, .. } = self.process;
+        let Process { feed, approach_feed, return_feed, retract, correction, .. } = self.process;
         let log = &self.flutes[flute];
         let path = Logarithmic { curve: log.curve.with_shift(pass.shift), ..log.clone() };
-        let start = path.curve.position(0.0);
         let angle = Decimal::round(path.curve.index, 4).unwrap_or_default();
         add(Step::Comment(format!("FLUTE {} OF {}, A {angle}{}", flute + 1, self.flutes.len(), pass.name)));
-        if let Some((axis, to)) = retract {
-            add(Step::Rapid(vec![(axis, to)]));
-            for other in (0..axes.count()).filter(|other| *other != axis) {
-                add(Step::Rapid(vec![(other, start[other])]));
-            }
-            let mut clear: Position = start;
-            clear[axis] = to;
-            let mut approach = Polyline::new(clear, axes.count());
-            approach.push(&start);
-            add(Step::Cut(Cut { feed, role: Role::Approach, curve: Curve::Lines(approach) }));
+        let Some((clear_axis, clear)) = retract else {
+            add(Step::Cut(Cut { feed, role: Role::Path, curve: Curve::Logarithmic(path) }));
+            return;
+        };
+        if let Some((axis, to)) = correction {
+            add(Step::Shift(vec![Shift { axis, to, parameter: true }]));
         }
+        let (first, last) = if path.back {
+            (path.curve.end(), path.curve.start())
+        } else {
+            (path.curve.start(), path.curve.end())
+        };
+        let (start, end) = (path.curve.position(first), path.curve.position(last));
+        let others = || (0..axes.count()).filter(move |other| *other != clear_axis);
+        let above = |mut position: Position| {
+            position[clear_axis] = clear;
+            position
+        };
+        add(Step::Rapid(vec![(clear_axis, clear)]));
+        for other in others() {
+            add(Step::Rapid(vec![(other, start[other])]));
+        }
+        // What the feed of the path makes along X Y Z where it begins.
+        let rate = |measure| path.curve.rate(measure, first);
+        let usual = feed.map(|feed| feed * (rate(Measure::Path) / rate(path.along)));
+        let straight = |feed: Option<f64>, line: Polyline| {
+            Step::Cut(Cut { feed, role: Role::Approach, curve: Curve::Lines(line) })
+        };
+        let mut approach = Polyline::new(above(start), axes.count());
+        approach.push(&start);
+        add(straight(approach_feed.or(usual), approach));
         add(Step::Cut(Cut { feed, role: Role::Path, curve: Curve::Logarithmic(path) }));
-        if let Some((axis, to)) = retract {
-            add(Step::Rapid(vec![(axis, to)]));
+        add(Step::Rapid(vec![(clear_axis, clear)]));
+        if return_feed.is_some() {
+            let mut at = above(end);
+            let mut back = Polyline::new(at, axes.count());
+            for other in
+                others().filter(|other| axes.kind(*other) == Kind::Linear && start[*other] != end[*other])
+            {
+                at[other] = start[other];
+                back.push(&at);
+            }
+            add(straight(return_feed, back));
         }
     }
 }

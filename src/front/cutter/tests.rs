@@ -35,7 +35,13 @@ fn a_flute_is_retracted_before_anything_turns() {
         .iter()
         .filter_map(|located| match &located.step {
             Step::Rapid(axes) => Some(axes[0]),
-            Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Cut(_) => None,
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Cut(_) => None,
         })
         .collect();
     let flute = |a: f64| [(2, 50.0), (0, 0.0), (1, 0.0), (3, a), (2, 50.0)];
@@ -63,7 +69,13 @@ fn sections(process: &str) -> Vec<String> {
     let intent = parse_program(&Source::new("t", text), SourceId::INPUT).unwrap();
     let comment = |step: &Step<f64, crate::ir::Curve>| match step {
         Step::Comment(text) => Some(text.clone()),
-        Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_) => None,
+        Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Rapid(_)
+        | Step::Cut(_) => None,
     };
     intent.program.steps.iter().filter_map(|located| comment(&located.step)).collect()
 }

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 fn three_axes() -> Machine {
     let file = "extends = \"heidenhain\"\n[axes]\nrotary = []\n[program]\n\
-                    header = [\"BEGIN PGM {name} MM\"]\nfooter = [\"END PGM {name} MM\"]\n";
+                    header = [\"BEGIN PGM {name} MM\"]\nfooter = []\n";
     Machine::parse(file, SourceId::INPUT).unwrap()
 }
 
@@ -35,7 +35,13 @@ fn error(text: &str) -> (&'static str, &str) {
 fn curves(decimals: &Decimals) -> Vec<&Written> {
     let curve = |step| match step {
         &Step::Cut(Cut { ref curve, .. }) => Some(curve),
-        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Rapid(_) => None,
     };
     decimals.program.steps.iter().filter_map(|located| curve(&located.step)).collect()
 }
@@ -201,7 +207,13 @@ fn feed_is_modal_and_rapid_is_not() {
         Step::Cut(Cut { feed: Some(feed), curve: Written::Lines(points), .. }) => {
             format!("{feed} {}", points.count())
         }
-        other @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Cut(_)) => {
+        other @ (Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Cut(_)) => {
             panic!("{other:?}")
         }
     };
@@ -221,8 +233,9 @@ fn what_is_not_understood_is_named_at_its_place() {
     for (line, id, at) in [
         ("2 L X+1 RL F100", "compensation", "RL"),
         ("2 L X+1 M8", "m-function", "M8"),
-        ("2 L X+1 FQ4", "parameter", "FQ4"),
         ("2 L IX+1", "incremental", "IX+1"),
+        ("2 L X+1 FQ1", "parameter-unset", "FQ1"),
+        ("2 L X+Q1", "parameter", "X+Q1"),
         ("2 L X+1 X+2", "axis-twice", "X+2"),
         ("2 L B+1", "axis-unknown", "B+1"),
         ("2 L X+1.00001", "digits-too-many", "X+1.00001"),
@@ -234,7 +247,7 @@ fn what_is_not_understood_is_named_at_its_place() {
         ("2 C X+1 Y+1 DR-", "block-unknown", "C"),
         ("2 LN X+1 NX+1", "block-unknown", "LN"),
         ("2 CYCL DEF 200 DRILLING ~\n  Q200=+2 ~\n  Q201=-3", "block-unknown", "CYCL"),
-        ("2 M8", "block-unknown", "M8"),
+        ("2 M7", "block-unknown", "M7"),
         ("/2 L X+1", "block-unknown", "/2"),
         ("2 SPL F100", "spline-empty", "SPL F100"),
         ("2 SPL X+1", "coefficients-missing", "X+1"),
@@ -266,7 +279,7 @@ fn every_block_is_counted_and_lines_that_continue_one_are_not() {
 #[test]
 fn fixed_lines_may_go_on_too() {
     let file = "extends = \"heidenhain\"\n[program]\nheader = [\"BEGIN PGM {name} MM\", \
-                    \"CYCL DEF 247 DATUM SETTING ~\", \"  Q339=+1 ;DATUM NUMBER\"]\nfooter = [\"END PGM {name} MM\"]\n";
+                    \"CYCL DEF 247 DATUM SETTING ~\", \"  Q339=+1 ;DATUM NUMBER\"]\nfooter = []\n";
     let machine = Machine::parse(file, SourceId::INPUT).unwrap();
     let text = "0 BEGIN PGM P1 MM\n1 CYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ;DATUM NUMBER\n2 ; A REMARK\n\
                     3 L Z+50 R0 FMAX\n4 END PGM P1 MM\n";
@@ -288,7 +301,8 @@ fn what_is_compiled_is_proved_and_read_back_as_it_is_written() {
         ("= 30\nf", "= 200\nf"),
     ] {
         let sources = Sources::new(Source::new("cone.toml", input.replace(from, to)));
-        let machine = Machine::built_in("heidenhain").unwrap();
+        let whole = "extends = \"heidenhain\"\n[feed]\nerror = 10\n";
+        let machine = Machine::parse(whole, SourceId::INPUT).unwrap();
         for motion in ["auto", "spl", "linear"] {
             let options = Options { motion: machine.dialect.motion(motion), ..Options::default() };
             let output = compile(&sources, language, &machine, &options)

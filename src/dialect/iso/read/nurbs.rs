@@ -261,8 +261,9 @@ impl Reader<'_> {
             WrittenNurbs { degree, knots, knot_digits, points: run.points, weights, lines: run.lines };
         let axes = self.assembler.machine.axes;
         let empty = Decimals {
-            program: Program { name: String::new(), axes, steps: Vec::new() },
+            program: Program { name: String::new(), number: 0, axes, steps: Vec::new() },
             digits: self.assembler.digits,
+            setup: Vec::new(),
         };
         if let Err(error) = crate::verify::to_nurbs(&empty, &nurbs) {
             let id = match error {

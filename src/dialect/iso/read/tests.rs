@@ -6,7 +6,7 @@ use crate::geom::nurbs::Nurbs;
 
 /// X and Y only, without lines round the program.
 const FLAT: &str = "extends = \"mazak\"\n[axes]\nlinear = [\"X\", \"Y\"]\nrotary = []\n\
-    [program]\nheader = []\ntool = [\"T{tool} M6\", \"G43 H{tool}\"]\nfooter = []\n";
+    [program]\nheader = []\ntool = [\"T{tool} M6\", \"G43 H{tool}\"]\nfooter = []\nclose = []\n";
 
 /// Example B of the reference: x = t.
 const B: &str = "G01 X0. Y0. F1000.\nG06.2 P4 K0. X0. Y0. R1.\nK0. X10. Y0. R1.\nK0. X30. Y24. R1.\n\
@@ -40,7 +40,13 @@ fn curve(reading: &Reading) -> Nurbs {
             }
             Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => None,
         },
-        Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Rapid(_) => None,
     });
     curves.next_back().unwrap()
 }
@@ -200,7 +206,12 @@ fn remarks_end_no_spline() {
                 Written::Through(_, points) => points.count().to_string(),
                 Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) => "other".to_owned(),
             },
-            Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => "step".to_owned(),
+            Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => "step".to_owned(),
         })
         .collect();
     assert_eq!(shown, ["step", "3", "HERE", "1"]);

@@ -3,11 +3,11 @@
 
 use crate::decimal::{Decimal, read_decimal};
 use nom::branch::alt;
-use nom::bytes::complete::{take_while, take_while1};
-use nom::character::complete::{char, space0};
-use nom::combinator::recognize;
+use nom::bytes::complete::{tag, take_while, take_while1};
+use nom::character::complete::{char, digit1, space0};
+use nom::combinator::{map_res, recognize};
 use nom::error::{Error, ErrorKind};
-use nom::sequence::{delimited, terminated};
+use nom::sequence::{delimited, preceded, terminated};
 use nom::{IResult, Parser};
 
 /// One word of a block.
@@ -17,13 +17,20 @@ pub(super) enum Word<'t> {
     Address(u8, Decimal),
     /// `X1=30.`
     Assignment(&'t str, Decimal),
+    /// `F#101`
+    FeedParameter(u32),
     /// `(FLUTE 1)`
     Remark(&'t str),
 }
 
-/// `word = address | remark | assignment`
+/// `word = address | remark | feed_parameter | assignment`
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((address, remark, assignment)).parse(input)
+    alt((address, remark, feed_parameter, assignment)).parse(input)
+}
+
+/// `feed_parameter = "F#", digits`
+fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
+    preceded(tag("F#"), map_res(digit1, str::parse)).map(Word::FeedParameter).parse(input)
 }
 
 /// `address = ( axis_letter | "F" | "K" | "P" | "R" ), number | "O", { "0" }, digit - "0", { digit } | code`, or another

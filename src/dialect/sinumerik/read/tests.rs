@@ -41,7 +41,14 @@ fn heights(text: &str) -> Vec<f64> {
             Step::Cut(Cut { curve: Written::Nurbs(nurbs), .. }) => {
                 pieces.extend(to_nurbs(&reading, nurbs).unwrap().beziers().map(|(piece, _)| piece));
             }
-            Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => {}
+            Step::Cut(_)
+            | Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => {}
         }
     }
     assert_eq!(pieces.len(), 4);
@@ -107,7 +114,13 @@ fn the_feed_of_a_block_holds_from_it_on() {
         .iter()
         .filter_map(|located| match &located.step {
             Step::Cut(cut) => Some(cut.feed),
-            Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => None,
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => None,
         })
         .collect();
     assert_eq!(feeds, [Some(Decimal::new(100, 0)), Some(Decimal::new(200, 0))]);

@@ -1,0 +1,322 @@
+//! The fixed lines round a program: a reader meets them line by line, against the machine file.
+
+use super::assemble::Assembler;
+use super::parts::home_word;
+use crate::decimal::{Decimal, read_decimal};
+use crate::ir::{Shift, Step};
+use crate::machine::Machine;
+use crate::machine::template::Template;
+use crate::source::Span;
+use std::ops::Range;
+
+/// Where a reader stands among the fixed lines of the machine file.
+pub struct Frame<'m> {
+    machine: &'m Machine,
+    header: usize,
+    /// The footer and the closing lines.
+    end: Vec<&'m Template>,
+    ended: usize,
+    /// The template lines that must follow, once the first of several was met.
+    pending: Vec<&'m Template>,
+    shifting: Option<Shifting>,
+    assign: Template,
+    started: bool,
+    name: Option<String>,
+}
+
+/// A work offset in the making: which of its lines comes next, and what was said.
+struct Shifting {
+    line: usize,
+    shifts: Vec<Shift<Decimal>>,
+    span: Span,
+}
+
+/// What a line is.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Met {
+    /// One of the fixed lines.
+    Fixed,
+    /// Something else: a block to be read.
+    Other,
+}
+
+impl<'m> Frame<'m> {
+    /// At the start of a program.
+    pub fn new(machine: &'m Machine) -> Frame<'m> {
+        let frame = &machine.frame;
+        Frame {
+            machine,
+            header: 0,
+            end: frame.footer.iter().chain(&frame.close).collect(),
+            ended: 0,
+            pending: Vec::new(),
+            shifting: None,
+            assign: Template(machine.dialect.parameter.assign.to_owned()),
+            started: false,
+            name: None,
+        }
+    }
+
+    /// Whether the whole header was met.
+    pub fn header_complete(&self) -> bool {
+        self.header == self.machine.frame.header.len()
+    }
+
+    /// Whether the whole footer was met, and what closes the text.
+    pub fn footer_complete(&self) -> bool {
+        self.ended == self.end.len()
+    }
+
+    /// The lists of lines that may stand anywhere behind the header.
+    fn lists(&self) -> [&'m [Template]; 6] {
+        let frame = &self.machine.frame;
+        [&frame.tool_spindle, &frame.tool, &frame.spindle, &frame.coolant, &frame.home, &frame.shift]
+    }
+
+    /// Whether a line could be one of the fixed lines that come after the header, so that a spline before it has ended.
+    pub fn may_begin(&self, text: &str) -> bool {
+        let ends = self.end.first().copied();
+        let mut lines = self.lists().into_iter().filter_map(<[Template]>::first).chain(ends);
+        lines.any(|template| begins_alike(template, text) && template.matched(text).is_some())
+    }
+
+    /// Meets a line, without its block number.
+    pub fn meet(
+        &mut self,
+        text: &str,
+        span: Span,
+        range: Range<usize>,
+        assembler: &mut Assembler<'m>,
+    ) -> Met {
+        let frame = &self.machine.frame;
+        let here = |template: &Template| format!("here the machine file has `{}`", template.0);
+        if let Some(template) = self.pending.first().copied() {
+            self.pending.remove(0);
+            if !self.take(template, text, span, false, assembler) {
+                assembler.error("frame-line", here(template), range);
+                self.pending.clear();
+            }
+            return Met::Fixed;
+        }
+        if let Some(shifting) = self.shifting.take() {
+            match self.shift(shifting, text, assembler) {
+                Ok(true) => return Met::Fixed,
+                Ok(false) => {}
+                Err(template) => {
+                    assembler.error("frame-line", here(template), range);
+                    return Met::Fixed;
+                }
+            }
+        }
+        if !self.started && self.header < frame.header.len() {
+            let template = &frame.header[self.header];
+            if self.take(template, text, span, true, assembler) {
+                self.header += 1;
+                return Met::Fixed;
+            }
+            if 0 < self.header {
+                assembler.error("header-differs", here(template), range);
+                self.header = frame.header.len();
+                return Met::Fixed;
+            }
+        }
+        self.started = true;
+        if 0 < self.ended {
+            match self.end.get(self.ended).copied() {
+                Some(template) if self.take(template, text, span, true, assembler) => self.ended += 1,
+                Some(template) => assembler.error("footer-differs", here(template), range),
+                None => assembler.error("text-after-end", "text after the end of the program", range),
+            }
+            return Met::Fixed;
+        }
+        // Blocks of moves are by far the most, and hardly one of these lines begins like one; a byte decides.
+        for lines in &self.lists()[..5] {
+            if let Some(template) = lines.first()
+                && begins_alike(template, text)
+                && self.take(template, text, span, true, assembler)
+            {
+                self.pending = lines[1..].iter().collect();
+                return Met::Fixed;
+            }
+        }
+        if let Some(template) = frame.shift.first()
+            && begins_alike(template, text)
+        {
+            let shifting = Shifting { line: 0, shifts: Vec::new(), span };
+            if self.shift(shifting, text, assembler) == Ok(true) {
+                return Met::Fixed;
+            }
+        }
+        if begins_alike(&self.assign, text) && self.assigned(text, assembler) {
+            return Met::Fixed;
+        }
+        if let Some(template) = self.end.first().copied()
+            && begins_alike(template, text)
+            && self.take(template, text, span, true, assembler)
+        {
+            self.ended = 1;
+            return Met::Fixed;
+        }
+        Met::Other
+    }
+
+    /// The text has ended: what was begun must be whole.
+    pub fn finish(&mut self, end: usize, assembler: &mut Assembler<'m>) {
+        let mut missing = self.pending.first().copied();
+        if let Some(shifting) = self.shifting.take() {
+            // No line is like this, so that the last of several lines is met.
+            missing = missing.or(self.shift(shifting, "", assembler).err());
+        }
+        if let Some(template) = missing {
+            let message = format!("the text ends where the machine file has `{}`", template.0);
+            assembler.error("frame-line", message, end..end);
+        }
+    }
+
+    /// Takes a line that is a template filled in: its tool, spindle and home become steps, its name the program's.
+    fn take(
+        &mut self,
+        template: &Template,
+        text: &str,
+        span: Span,
+        first: bool,
+        assembler: &mut Assembler<'m>,
+    ) -> bool {
+        let Some(values) = template.matched(text) else { return false };
+        for (variable, value) in values {
+            match variable.as_str() {
+                "name" => {
+                    if self.name.as_deref().is_some_and(|known| known != value) {
+                        return false;
+                    }
+                    value.clone_into(&mut assembler.name);
+                    self.name = Some(value.to_owned());
+                }
+                "number" => match value.parse() {
+                    Ok(number) if value.len() == 4 => assembler.number = number,
+                    _ => return false,
+                },
+                "linear" => {
+                    if value != self.machine.linear_names() {
+                        return false;
+                    }
+                }
+                "tool" => {
+                    let Ok(number) = value.parse::<u32>() else { return false };
+                    // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
+                    if first {
+                        assembler.step(Step::Tool(number), span);
+                    } else if assembler.tool() != Some(number) {
+                        return false;
+                    }
+                }
+                "home" => {
+                    let axes = 0..self.machine.axes.count();
+                    let known = |i: &usize| self.machine.home(*i).is_some();
+                    let Some(axis) = axes.filter(known).find(|i| home_word(*i, self.machine) == value) else {
+                        return false;
+                    };
+                    assembler.home(axis, span);
+                }
+                _ => match read_decimal(value.as_bytes(), false) {
+                    Ok((rpm, length)) if length == value.len() => assembler.step(Step::Spindle(rpm), span),
+                    _ => return false,
+                },
+            }
+        }
+        if !self.machine.frame.coolant.is_empty() && self.machine.frame.coolant.first() == Some(template) {
+            assembler.step(Step::Coolant, span);
+        }
+        true
+    }
+
+    /// Meets a line of a work offset. False: the line before was its last. An error names the line that is missing.
+    fn shift(
+        &mut self,
+        mut shifting: Shifting,
+        text: &str,
+        assembler: &mut Assembler<'m>,
+    ) -> Result<bool, &'m Template> {
+        let lines = &self.machine.frame.shift;
+        let Some(template) = lines.get(shifting.line) else { return Ok(false) };
+        let repeated = template.variables().any(|variable| variable == "i");
+        let said = template.matched(text).and_then(|values| {
+            let mut shifts = Vec::new();
+            for (variable, value) in values {
+                match variable.as_str() {
+                    "i" => (value == (shifting.shifts.len() + 1).to_string()).then_some(())?,
+                    _ => shifts = words(value, assembler)?,
+                }
+            }
+            Some(shifts)
+        });
+        let ends = shifting.line + 1 == lines.len();
+        match said {
+            Some(shifts) => {
+                shifting.shifts.extend(shifts);
+                if repeated {
+                    self.shifting = Some(shifting);
+                } else if ends {
+                    assembler.shift(shifting.shifts, shifting.span);
+                } else {
+                    shifting.line += 1;
+                    self.shifting = Some(shifting);
+                }
+                Ok(true)
+            }
+            // Behind the last of the lines that stand once for each axis comes something else.
+            None if repeated && ends && !shifting.shifts.is_empty() => {
+                assembler.shift(shifting.shifts, shifting.span);
+                Ok(false)
+            }
+            None => Err(template),
+        }
+    }
+
+    /// Meets a line that sets a parameter.
+    fn assigned(&self, text: &str, assembler: &mut Assembler<'m>) -> bool {
+        let Some(values) = self.assign.matched(text) else { return false };
+        let value =
+            |name: &str| values.iter().find(|(variable, _)| variable == name).map(|(_, value)| *value);
+        let number = value("n").and_then(|n| n.parse::<u32>().ok());
+        let value = value("value").and_then(|value| whole_decimal(value.trim_ascii()));
+        let (Some(number), Some(value)) = (number, value) else { return false };
+        assembler.parameters.insert(number, value);
+        true
+    }
+}
+
+/// Whether a line begins as a template does.
+fn begins_alike(template: &Template, text: &str) -> bool {
+    let first = template.0.as_bytes().first();
+    first == Some(&b'{') || first == text.as_bytes().first()
+}
+
+fn whole_decimal(text: &str) -> Option<Decimal> {
+    read_decimal(text.as_bytes(), false)
+        .ok()
+        .filter(|(_, length)| *length == text.len())
+        .map(|(value, _)| value)
+}
+
+/// `A90 Z=R1`: where axes count from, by number or parameter.
+fn words(text: &str, assembler: &Assembler) -> Option<Vec<Shift<Decimal>>> {
+    let machine = assembler.machine;
+    text.split_ascii_whitespace()
+        .map(|word| {
+            let (name, value) = word.split_once('=').or_else(|| word.split_at_checked(1))?;
+            let axis = assembler.axis(name)?;
+            let letter = machine.dialect.parameter.letter;
+            let parameter = value.trim_start_matches('+').strip_prefix(letter);
+            let to = match parameter {
+                Some(number) => *assembler.parameters.get(&number.parse().ok()?)?,
+                None => {
+                    let value = whole_decimal(value)?;
+                    if machine.reversed()[axis] { value.times(-1)? } else { value }
+                }
+            };
+            to.units(assembler.digits[axis])?;
+            Some(Shift { axis, to, parameter: parameter.is_some() })
+        })
+        .collect()
+}

@@ -1,0 +1,61 @@
+//! Words that change what holds, and axes that go the short way.
+
+use super::{Block, Motion, Reader, STATE_CODES};
+use crate::decimal::Decimal;
+use crate::ir::ThroughKind;
+use std::ops::Range;
+
+impl Reader<'_> {
+    /// An axis that goes to its place the short way.
+    pub(super) fn shortest(&mut self, name: &str, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let Some(axis) = self.assembler.axis(name).filter(|axis| self.assembler.wraps(*axis)) else {
+            let message = format!("DC belongs to axes that wrap at 360 degrees, and {name} is none here");
+            return self.assembler.error("short-way-axis", message, range);
+        };
+        let Some(units) = self.assembler.units(axis, value, range.clone()) else { return };
+        match self.assembler.nearest(axis, units) {
+            Some(units) => self.name_axis(block, axis, units, range),
+            None => {
+                let message =
+                    format!("which way {name} goes cannot be said: it is unknown, or both are as long");
+                self.assembler.error("short-way", message, range);
+            }
+        }
+    }
+
+    pub(super) fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
+        match keyword {
+            "POLY" => self.set_motion(Motion::Poly),
+            "BSPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Bspline;
+            }
+            "ASPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Through(ThroughKind::Akima);
+            }
+            "CSPLINE" => {
+                block.starts_spline = true;
+                self.motion = Motion::Through(ThroughKind::Cubic);
+            }
+            "UPATH" | "SPATH" => {
+                self.flush();
+                self.upath = keyword == "UPATH";
+            }
+            "BAUTO" | "BNAT" | "BTAN" => self.end_condition(keyword, true, range),
+            "EAUTO" | "ENAT" | "ETAN" => self.end_condition(keyword, false, range),
+            _ if STATE_CODES.contains(&keyword) => {}
+            _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
+        }
+    }
+
+    /// The IR has no place for end conditions: they are the machine file's.
+    fn end_condition(&mut self, word: &str, begin: bool, range: Range<usize>) {
+        let spline = &self.assembler.machine.spline;
+        let expected = if begin { &spline.begin } else { &spline.end };
+        if word != expected {
+            let message = format!("the machine file has the end condition {expected} here, not {word}");
+            self.assembler.error("end-condition", message, range);
+        }
+    }
+}

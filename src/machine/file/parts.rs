@@ -1,0 +1,271 @@
+//! The tables of a machine file, one by one.
+
+use super::Reader;
+use crate::diagnostic::Diagnostic;
+use crate::machine::keys::{AxisFile, DigitsFile, ParameterFile, ProgramFile, SplineFile, TextFile};
+use crate::machine::template::Template;
+use crate::machine::{AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Parameters, Spline, Text};
+use crate::units::{Axes, Axis};
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+impl Reader {
+    /// What the file says of each axis, over what the machine below it says.
+    pub(super) fn limits(
+        &mut self,
+        file: BTreeMap<String, AxisFile>,
+        axes: Option<&Axes>,
+        base: Option<&Machine>,
+    ) -> BTreeMap<Axis, AxisLimits> {
+        let mut all = base.map(|b| b.limits.clone()).unwrap_or_default();
+        for (name, own) in file {
+            let axis = Axis::new(&name).filter(|axis| axes.is_none_or(|axes| axes.index_of(*axis).is_some()));
+            let Some(axis) = axis else {
+                let message = format!("[axis.{name}] speaks of an axis that the machine does not have");
+                self.diagnostics.push(Diagnostic::error("axis-unknown", message));
+                continue;
+            };
+            let limits = all.entry(axis).or_default();
+            if let Some(kind) = &own.kind {
+                match kind.get_ref().as_str() {
+                    "linear" => limits.modulo = false,
+                    "modulo" => limits.modulo = true,
+                    _ => self.error(
+                        "axis-kind",
+                        "kind is \"linear\" (it counts on) or \"modulo\"",
+                        kind.span(),
+                    ),
+                }
+            }
+            if let Some(digits) = &own.digits {
+                if 9 < *digits.get_ref() {
+                    self.error("digits-range", "at most 9 decimals", digits.span());
+                }
+                limits.digits = Some(*digits.get_ref());
+            }
+            if let Some(sign) = &own.sign {
+                match sign.get_ref() {
+                    1 => limits.reversed = false,
+                    -1 => limits.reversed = true,
+                    _ => self.error("axis-sign", "sign is 1 or -1", sign.span()),
+                }
+            }
+            if let Some(moves) = &own.moves {
+                match moves.get_ref().as_str() {
+                    "wheel" => limits.moves = Moves::Wheel,
+                    "work" => limits.moves = Moves::Work,
+                    _ => self.error("axis-moves", "moves is \"wheel\" or \"work\"", moves.span()),
+                }
+            }
+            let mut number = |value: Option<Spanned<f64>>, into: &mut Option<f64>, positive: bool| {
+                if let Some(value) = value {
+                    let x = *value.get_ref();
+                    if !x.is_finite() || (positive && x <= 0.0) {
+                        self.error(
+                            "axis-limit",
+                            "a limit is a finite number, a speed greater than zero",
+                            value.span(),
+                        );
+                    }
+                    *into = Some(x);
+                }
+            };
+            number(own.min, &mut limits.min, false);
+            let max_span = own.max.as_ref().map(Spanned::span);
+            number(own.max, &mut limits.max, false);
+            number(own.max_speed, &mut limits.max_speed, true);
+            number(own.max_acceleration, &mut limits.max_acceleration, true);
+            number(own.home, &mut limits.home, false);
+            if let (Some(min), Some(max)) = (limits.min, limits.max)
+                && max <= min
+            {
+                self.error("axis-limit", "max must be greater than min", max_span.unwrap_or(0..0));
+            }
+        }
+        all
+    }
+
+    pub(super) fn digits(&mut self, file: &DigitsFile, base: Option<Digits>) -> Option<Digits> {
+        // Nine decimals of a position up to 10⁵ are as many as a float holds.
+        for digits in [&file.linear, &file.rotary, &file.feed, &file.knot, &file.weight].into_iter().flatten()
+        {
+            if 9 < *digits.get_ref() {
+                self.error("digits-range", "at most 9 decimals", digits.span());
+            }
+        }
+        let own = |digits: &Option<Spanned<u8>>| digits.as_ref().map(|d| *d.get_ref());
+        Some(Digits {
+            linear: self.or(own(&file.linear), base.map(|b| b.linear), "digits.linear")?,
+            rotary: self.or(own(&file.rotary), base.map(|b| b.rotary), "digits.rotary")?,
+            feed: self.or(own(&file.feed), base.map(|b| b.feed), "digits.feed")?,
+            knot: self.or(own(&file.knot), base.map(|b| b.knot), "digits.knot")?,
+            weight: self.or(own(&file.weight), base.map(|b| b.weight), "digits.weight")?,
+        })
+    }
+
+    pub(super) fn spline(&mut self, file: SplineFile, base: Option<&Machine>) -> Option<Spline> {
+        let base = base.map(|b| &b.spline);
+        let axes = match file.axes {
+            None => self.or(None, base.map(|b| b.axes.clone()), "spline.axes")?,
+            Some(names) => names.iter().map(|name| self.axis(name)).collect::<Option<Vec<Axis>>>()?,
+        };
+        if let Some(degree) = &file.poly_degree
+            && !(3..=5).contains(degree.get_ref())
+        {
+            self.error("degree-range", "poly_degree is 3 to 5", degree.span());
+        }
+        if let Some(blocks) = &file.bspline_min_blocks
+            && 1000 < *blocks.get_ref()
+        {
+            self.error("blocks-range", "bspline_min_blocks is at most 1000", blocks.span());
+        }
+        // Empty where a control has none.
+        for (word, known) in
+            [(&file.begin, ["", "BAUTO", "BNAT", "BTAN"]), (&file.end, ["", "EAUTO", "ENAT", "ETAN"])]
+        {
+            if let Some(word) = word
+                && !known.contains(&word.get_ref().as_str())
+            {
+                let message = format!("the end condition is {}", known[1..].join(" or "));
+                self.error("end-condition", message, word.span());
+            }
+        }
+        Some(Spline {
+            axes,
+            poly_degree: self.or(
+                file.poly_degree.map(Spanned::into_inner),
+                base.map(|b| b.poly_degree),
+                "spline.poly_degree",
+            )?,
+            shared_parameter: self.or(
+                file.shared_parameter,
+                base.map(|b| b.shared_parameter),
+                "spline.shared_parameter",
+            )?,
+            bspline_min_blocks: self.or(
+                file.bspline_min_blocks.map(Spanned::into_inner),
+                base.map(|b| b.bspline_min_blocks),
+                "spline.bspline_min_blocks",
+            )?,
+            begin: self.or(
+                file.begin.map(Spanned::into_inner),
+                base.map(|b| b.begin.clone()),
+                "spline.begin",
+            )?,
+            end: self.or(file.end.map(Spanned::into_inner), base.map(|b| b.end.clone()), "spline.end")?,
+        })
+    }
+
+    fn lines(
+        &mut self,
+        own: Option<Vec<Spanned<String>>>,
+        base: Option<&Vec<Template>>,
+        key: &str,
+        variables: &[&str],
+    ) -> Option<Vec<Template>> {
+        let Some(own) = own else { return self.or(None, base.cloned(), &format!("program.{key}")) };
+        let mut lines = Vec::new();
+        for line in own {
+            let template = Template(line.get_ref().clone());
+            let strange = template.variables().find(|v| !variables.contains(v)).map(str::to_owned);
+            if let Some(strange) = strange {
+                let message = format!(
+                    "`{{{strange}}}` cannot be filled in here; only {{{}}} can",
+                    variables.join("}, {")
+                );
+                self.error("template-variable", message, line.span());
+            }
+            if line.get_ref().is_empty() || !line.get_ref().bytes().all(|b| (32..127).contains(&b)) {
+                self.error("template-text", "a line of printable ASCII is needed", line.span());
+            }
+            lines.push(template);
+        }
+        Some(lines)
+    }
+
+    pub(super) fn text(&mut self, file: TextFile, base: Option<&Text>) -> Option<Text> {
+        let line_end = match &file.line_end {
+            None => self.or(None, base.map(|b| b.line_end), "text.line_end")?,
+            Some(word) => match word.get_ref().as_str() {
+                "lf" => LineEnd::Lf,
+                "crlf" => LineEnd::CrLf,
+                _ => {
+                    self.error("line-end", "line_end is \"lf\" or \"crlf\"", word.span());
+                    LineEnd::Lf
+                }
+            },
+        };
+        if let Some(length) = &file.comment_length
+            && !(20..=500).contains(length.get_ref())
+        {
+            self.error("comment-length", "comment_length is 20 to 500", length.span());
+        }
+        let length = file.comment_length.map(Spanned::into_inner);
+        Some(Text {
+            point_always: self.or(file.point_always, base.map(|b| b.point_always), "text.point_always")?,
+            sign_always: self.or(file.sign_always, base.map(|b| b.sign_always), "text.sign_always")?,
+            leading_zero: self.or(file.leading_zero, base.map(|b| b.leading_zero), "text.leading_zero")?,
+            spaces: self.or(file.spaces, base.map(|b| b.spaces), "text.spaces")?,
+            number_start: self.or(file.number_start, base.map(|b| b.number_start), "text.number_start")?,
+            number_step: self.or(file.number_step, base.map(|b| b.number_step), "text.number_step")?,
+            number_comments: self.or(
+                file.number_comments,
+                base.map(|b| b.number_comments),
+                "text.number_comments",
+            )?,
+            line_end,
+            comment_length: self.or(length, base.map(|b| b.comment_length), "text.comment_length")?,
+            extension: self.or(file.extension, base.map(|b| b.extension.clone()), "text.extension")?,
+        })
+    }
+
+    pub(super) fn parameters(
+        &mut self,
+        file: &ParameterFile,
+        base: Option<Parameters>,
+    ) -> Option<Parameters> {
+        let own = |number: &Option<Spanned<u32>>| number.as_ref().map(|n| *n.get_ref());
+        let first = self.or(own(&file.first), base.map(|b| b.first), "parameter.first")?;
+        let last = self.or(own(&file.last), base.map(|b| b.last), "parameter.last")?;
+        if last < first {
+            let span = file.last.as_ref().or(file.first.as_ref()).map_or(0..0, Spanned::span);
+            self.error("parameter-range", "the last parameter comes before the first", span);
+        }
+        Some(Parameters { first, last })
+    }
+
+    pub(super) fn frame(&mut self, file: ProgramFile, base: Option<&Frame>) -> Option<Frame> {
+        let lines = |this: &mut Self, own, of: fn(&Frame) -> &Vec<Template>, key, variables: &[&str]| {
+            this.lines(own, base.map(of), key, variables)
+        };
+        Some(Frame {
+            header: lines(self, file.header, |b| &b.header, "header", &["name", "number", "linear"])?,
+            setup: self.or(file.setup, base.map(|b| b.setup), "program.setup")?,
+            home: lines(self, file.home, |b| &b.home, "home", &["home"])?,
+            tool: lines(self, file.tool, |b| &b.tool, "tool", &["tool"])?,
+            spindle: lines(self, file.spindle, |b| &b.spindle, "spindle", &["rpm"])?,
+            tool_spindle: lines(
+                self,
+                file.tool_spindle,
+                |b| &b.tool_spindle,
+                "tool_spindle",
+                &["tool", "rpm"],
+            )?,
+            coolant: lines(self, file.coolant, |b| &b.coolant, "coolant", &[])?,
+            shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
+            footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
+            subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,
+            call: self.line(file.call, base.map(|b| &b.call), "call")?,
+            begin: self.line(file.begin, base.map(|b| &b.begin), "begin")?,
+            end: self.line(file.end, base.map(|b| &b.end), "end")?,
+            close: lines(self, file.close, |b| &b.close, "close", &["name"])?,
+        })
+    }
+
+    /// A line of subprograms.
+    fn line(&mut self, own: Option<Spanned<String>>, base: Option<&Template>, key: &str) -> Option<Template> {
+        let lines =
+            self.lines(own.map(|line| vec![line]), base.cloned().map(|b| vec![b]).as_ref(), key, &["label"])?;
+        lines.into_iter().next()
+    }
+}

@@ -1,0 +1,218 @@
+//! What a machine file says, as types.
+
+use super::template::Template;
+use crate::decimal::Spelling;
+use crate::dialect::{Dialect, Motion};
+use crate::units::{Axes, Axis};
+use std::collections::BTreeMap;
+
+/// One machine.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// Its name.
+    pub name: String,
+    /// What it is, in one line.
+    pub about: String,
+    /// How it is written to.
+    pub dialect: &'static Dialect,
+    /// The motion for cutting pieces; none for `auto`.
+    pub motion: Option<&'static Motion>,
+    /// mm, where neither the command line nor the input says.
+    pub tolerance: f64,
+    /// Its axes.
+    pub axes: Axes,
+    /// Which of them are X, Y, Z and A of a cutter.
+    pub cutter_axes: [Axis; 4],
+    /// What each axis can do, where the file says.
+    pub limits: BTreeMap<Axis, AxisLimits>,
+    /// Decimals.
+    pub digits: Digits,
+    /// Spelling.
+    pub text: Text,
+    /// How F counts rotary axes.
+    pub rotary_feed: RotaryFeed,
+    /// How far the speed inside a block may be from the one asked for, as a share.
+    pub feed_error: f64,
+    /// Whether feeds are parameters.
+    pub feed_parameter: bool,
+    /// Which parameters a program may use.
+    pub parameters: Parameters,
+    /// What its splines take.
+    pub spline: Spline,
+    /// The lines round a program.
+    pub frame: Frame,
+}
+
+/// How F counts rotary axes in a block that moves linear ones too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotaryFeed {
+    /// F is the speed along the path of the linear axes; rotary ones go along.
+    Free,
+    /// F is the speed along the path of all axes, a degree counted as a millimetre.
+    DegreesAsMm,
+    /// F is the speed along the path of all axes, rotary ones counted in mm at the cutter's surface.
+    Surface,
+}
+
+/// What one axis can do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisLimits {
+    /// Whether a rotary axis wraps at 360° instead of counting on.
+    pub modulo: bool,
+    /// The least position, mm or degrees.
+    pub min: Option<f64>,
+    /// The greatest position, mm or degrees.
+    pub max: Option<f64>,
+    /// The greatest speed at feed, mm/min or degrees/min.
+    pub max_speed: Option<f64>,
+    /// The greatest acceleration at feed, mm/s² or degrees/s².
+    pub max_acceleration: Option<f64>,
+    /// Where it is clear in machine coordinates, mm.
+    pub home: Option<f64>,
+    /// Its decimals, where they are not those of its kind.
+    pub digits: Option<u8>,
+    /// Whether the control counts the other way.
+    pub reversed: bool,
+    /// What moves with it.
+    pub moves: Moves,
+}
+
+/// What moves with an axis. Programs say how the wheel moves relative to the work, either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Moves {
+    /// The wheel.
+    #[default]
+    Wheel,
+    /// The work.
+    Work,
+}
+
+/// How many decimals an address takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Digits {
+    /// Linear axes.
+    pub linear: u8,
+    /// Rotary axes.
+    pub rotary: u8,
+    /// Feed and spindle speed.
+    pub feed: u8,
+    /// PL of BSPLINE, K of G06.2.
+    pub knot: u8,
+    /// PW, R.
+    pub weight: u8,
+}
+
+/// How text is spelled.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a key of the machine file")]
+pub struct Text {
+    /// `X30.` instead of `X30`.
+    pub point_always: bool,
+    /// `X+30` instead of `X30`.
+    pub sign_always: bool,
+    /// `X0.5` instead of `X.5`.
+    pub leading_zero: bool,
+    /// `G1 X30` instead of `G1X30`.
+    pub spaces: bool,
+    /// The first block number.
+    pub number_start: u32,
+    /// What it grows by; 0 for none at all.
+    pub number_step: u32,
+    /// Whether comments have numbers too.
+    pub number_comments: bool,
+    /// What ends a line.
+    pub line_end: LineEnd,
+    /// The most characters of a comment.
+    pub comment_length: usize,
+    /// The usual extension of a program file.
+    pub extension: String,
+}
+
+impl Text {
+    /// How numbers are spelled.
+    pub fn spelling(&self) -> Spelling {
+        Spelling {
+            point_always: self.point_always,
+            sign_always: self.sign_always,
+            leading_zero: self.leading_zero,
+        }
+    }
+}
+
+/// What ends a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineEnd {
+    /// A line feed.
+    Lf,
+    /// A carriage return and a line feed.
+    CrLf,
+}
+
+impl LineEnd {
+    /// The characters.
+    pub fn text(self) -> &'static str {
+        match self {
+            LineEnd::Lf => "\n",
+            LineEnd::CrLf => "\r\n",
+        }
+    }
+}
+
+/// Which parameters a program may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameters {
+    /// The number of the first.
+    pub first: u32,
+    /// The number of the last.
+    pub last: u32,
+}
+
+/// What splines a machine takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spline {
+    /// Which axes spline blocks may move.
+    pub axes: Vec<Axis>,
+    /// The greatest degree of polynomial blocks.
+    pub poly_degree: usize,
+    /// Whether all axes of a spline block share one parameter on the control.
+    pub shared_parameter: bool,
+    /// The fewest blocks a B-spline may have.
+    pub bspline_min_blocks: usize,
+    /// The word for the start condition of through-point splines.
+    pub begin: String,
+    /// The word for their end condition.
+    pub end: String,
+}
+
+/// The lines round a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Before the first step.
+    pub header: Vec<Template>,
+    /// Whether comments behind the header say what to set up.
+    pub setup: bool,
+    /// The retraction of an axis in machine coordinates.
+    pub home: Vec<Template>,
+    /// A tool call.
+    pub tool: Vec<Template>,
+    /// The spindle's start.
+    pub spindle: Vec<Template>,
+    /// A tool call and the spindle's start in one, where a control wants them so; empty: one after the other.
+    pub tool_spindle: Vec<Template>,
+    /// The coolant's start.
+    pub coolant: Vec<Template>,
+    /// A work offset.
+    pub shift: Vec<Template>,
+    /// After the last step.
+    pub footer: Vec<Template>,
+    /// Whether sections that are alike but for a work offset are written once and called.
+    pub subprograms: bool,
+    /// The call of a subprogram.
+    pub call: Template,
+    /// The first line of a subprogram.
+    pub begin: Template,
+    /// The last line of a subprogram.
+    pub end: Template,
+    /// The last lines of the text, behind subprograms.
+    pub close: Vec<Template>,
+}

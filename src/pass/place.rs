@@ -1,0 +1,153 @@
+//! Work offsets: where an axis wraps at 360 degrees, or where sections are to be alike, the text counts each flute from
+//! a place of its own.
+//!
+//! A flute at index 270 that turns by 159 degrees ends at 429. An axis that wraps has no 429; counted from 270 the flute
+//! runs from 0 to 159, and so does every other. Where the cutter turns by more than a whole turn, no offset helps: the
+//! flute is counted from where it starts, and lines go round in steps.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Shift, Step};
+use crate::machine::Machine;
+use crate::units::{Axes, Axis, DEGREES, Kind};
+
+/// The intent as this machine counts it: its axes' names, its homes, its work offsets.
+///
+/// # Errors
+/// The machine lacks an axis, or has no lines for a work offset that is needed.
+pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostics> {
+    let is_cutter = intent.logarithmic().next().is_some();
+    if is_cutter {
+        let kinds = intent.program.axes;
+        let named: Vec<_> =
+            machine.cutter_axes.iter().enumerate().map(|(i, axis)| (*axis, kinds.kind(i))).collect();
+        match Axes::new(&named) {
+            Some(axes) => intent.program.axes = axes,
+            None => {
+                let message = format!("machine `{}` names an axis of the cutter twice", machine.name);
+                return Err(Diagnostic::error("cutter-axes", message).into());
+            }
+        }
+    }
+    let machine = machine.with_axes(&intent.program.axes)?;
+    homes(&mut intent, &machine);
+    shifts(&mut intent, &machine)?;
+    Ok(intent)
+}
+
+/// Leaves out retractions to a home that the machine file does not state.
+fn homes(intent: &mut Intent, machine: &Machine) {
+    intent.program.steps.retain(|located| match located.step {
+        Step::Home(axis) => machine.home(axis).is_some() && !machine.frame.home.is_empty(),
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Shift(_)
+        | Step::Rapid(_)
+        | Step::Cut(_) => true,
+    });
+}
+
+/// The first rotary axis, the one that a flute turns.
+fn turning(intent: &Intent) -> Option<usize> {
+    intent.program.axes.as_slice().iter().position(|(_, kind)| *kind == Kind::Rotary)
+}
+
+/// Degrees that A runs through on a path, with its index: least, greatest, and where it is run from.
+fn turn(log: &Logarithmic) -> (f64, f64, f64) {
+    let at = |x: f64| log.curve.index + log.curve.angle(x) * DEGREES;
+    // An overrun goes on by two steps at most.
+    let more = if log.overrun { 2.0 * log.dl.unwrap_or(super::settle::MAX_STEP) } else { 0.0 };
+    let (start, end) = (at(log.curve.start()), at(log.curve.end() + more));
+    (start.min(end), start.max(end), if log.back { end } else { start })
+}
+
+/// The rotary axis that wraps at 360 degrees and turns farther than that on a path, so that no spline can run it.
+pub fn winds(intent: &Intent, machine: &Machine) -> Option<Axis> {
+    let axis = machine.axes.name(turning(intent)?);
+    let far = |(low, high, _): (f64, f64, f64)| MOST_TURN < high - low;
+    let winds = machine.limits(axis).modulo && intent.logarithmic().any(|(log, ..)| far(turn(log)));
+    winds.then_some(axis)
+}
+
+/// The most degrees that fit between 0 and 360 wherever a path starts within a degree.
+const MOST_TURN: f64 = 359.0;
+
+fn shifts(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
+    let Some(axis) = turning(intent) else { return Ok(()) };
+    let modulo = machine.limits(machine.axes.name(axis)).modulo;
+    let outside = intent.logarithmic().any(|(log, ..)| {
+        let (low, high, _) = turn(log);
+        low < 0.0 || 360.0 < high
+    });
+    let wanted = (modulo && outside) || (machine.frame.subprograms && intent.logarithmic().next().is_some());
+    let corrected = intent.program.steps.iter().any(|located| matches!(located.step, Step::Shift(_)));
+    if (wanted || corrected) && machine.frame.shift.is_empty() {
+        let message = format!("machine `{}` has no lines for a work offset", machine.name);
+        return Err(Diagnostic::error("shift-missing", message)
+            .hint("state them under [program]: shift = [\"TRANS {words}\"] or what the control calls it")
+            .into());
+    }
+    if !wanted {
+        return Ok(());
+    }
+    let mut steps: Vec<Located<f64, Curve>> = Vec::with_capacity(intent.program.steps.len() + 8);
+    let mut rest = std::mem::take(&mut intent.program.steps).into_iter().peekable();
+    // From a remark to the next one is a section; behind the last path nothing is shifted any more.
+    let mut section: Vec<Located<f64, Curve>> = Vec::new();
+    while let Some(located) = rest.next() {
+        section.push(located);
+        let ends = rest.peek().is_none_or(|next| match next.step {
+            Step::Comment(_) | Step::Home(_) => true,
+            Step::Shift(_) => section.iter().any(|located| located.step.cut().is_some()),
+            Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Rapid(_) | Step::Cut(_) => false,
+        });
+        if ends {
+            if let Some(to) = offset(&section) {
+                count_from(&mut section, Shift { axis, to, parameter: false });
+            }
+            steps.append(&mut section);
+        }
+    }
+    unshift(&mut steps, axis);
+    intent.program.steps = steps;
+    Ok(())
+}
+
+/// From where a section counts its rotary axis.
+fn offset(section: &[Located<f64, Curve>]) -> Option<f64> {
+    let path = section.iter().find_map(|located| match located.step.cut() {
+        Some(Cut { curve: Curve::Logarithmic(log), .. }) => Some(log),
+        Some(_) | None => None,
+    })?;
+    let ((low, high, start), index) = (turn(path), path.curve.index);
+    // Whole degrees beside the index, so that the offset can be read.
+    let least = if high - low <= MOST_TURN { low } else { start };
+    Some(index + (least - index).floor())
+}
+
+/// Puts a work offset at the head of a section, behind its remark.
+fn count_from(section: &mut Vec<Located<f64, Curve>>, shift: Shift<f64>) {
+    let remarks = section.iter().take_while(|located| matches!(located.step, Step::Comment(_))).count();
+    if let Some(Located { step: Step::Shift(shifts), .. }) = section.get_mut(remarks) {
+        shifts.insert(0, shift);
+    } else {
+        let span = section[0].span;
+        section.insert(remarks, Located { step: Step::Shift(vec![shift]), span });
+    }
+}
+
+/// Behind the last path the axis counts from the work's own zero again.
+fn unshift(steps: &mut Vec<Located<f64, Curve>>, axis: usize) {
+    let Some(last) = steps.iter().rposition(|located| located.step.cut().is_some()) else { return };
+    let retracted =
+        steps[last..].iter().take_while(|located| matches!(located.step, Step::Cut(_) | Step::Rapid(_)));
+    let at = last + retracted.count();
+    let zero = Shift { axis, to: 0.0, parameter: false };
+    if let Some(Located { step: Step::Shift(shifts), .. }) = steps.get_mut(at) {
+        shifts.insert(0, zero);
+    } else {
+        let span = steps[last].span;
+        steps.insert(at, Located { step: Step::Shift(vec![zero]), span });
+    }
+}

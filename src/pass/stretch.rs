@@ -1,0 +1,185 @@
+//! Feeds that mean what was asked: F for every stretch of a path.
+//!
+//! What was asked is a speed of one [`Measure`] (mm along X Y Z, along the edge, along X, or degrees of A); F counts
+//! another on a control that counts degrees of A too. With m the rate of what was asked per mm of X, n that of what F
+//! counts, M and N what passes of each over a stretch, the stretch takes the time M / feed when
+//!
+//! ```text
+//! F = feed · N / M          the speed at X is then  feed · e(X),   e = (N/M) · m(X)/n(X)
+//! ```
+//!
+//! m/n is monotone in X for every pair of measures, since each rate is of the form √(c² + (k qⁿ)²) with q = 1 + βX. So |e − 1| is greatest at
+//! an end of the stretch. Where it is greater than the machine file's `error`, the path is cut into the fewest stretches
+//! of equal ratio of m/n that hold it.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::elementary::ln_1p;
+use crate::geom::logcurve::{LogCurve, Measure};
+use crate::ir::Logarithmic;
+use crate::machine::{Machine, RotaryFeed};
+
+/// The most stretches of one path.
+const MAX_STRETCHES: usize = 1000;
+
+/// A part of a path that has one F.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// The part.
+    pub path: Logarithmic,
+    /// F, per minute; none where no feed was asked for.
+    pub feed: Option<f64>,
+    /// The greatest |e − 1| on it.
+    pub error: f64,
+}
+
+/// What F counts on a machine.
+pub fn counted(machine: &Machine) -> Measure {
+    match machine.rotary_feed {
+        RotaryFeed::Free => Measure::Path,
+        RotaryFeed::DegreesAsMm => Measure::PathAndDegrees,
+        RotaryFeed::Surface => Measure::Edge,
+    }
+}
+
+/// The stretches of a path, in the order of X. `whole` asks for one, where a form cannot be cut.
+pub fn stretches(path: &Logarithmic, feed: Option<f64>, whole: bool, machine: &Machine) -> Vec<Stretch> {
+    let curve = &path.curve;
+    let pair = (path.along, counted(machine));
+    let Some(feed) = feed else {
+        return vec![Stretch { path: path.clone(), feed: None, error: 0.0 }];
+    };
+    let part = |from: f64, to: f64| {
+        // Both ends lie on the path, so that the range is a sound one.
+        let curve = curve.with_range(from, to).unwrap_or(*curve);
+        let mean = curve.amount(pair.1) / curve.amount(pair.0);
+        let error = [curve.start(), curve.end()].map(|x| (mean * ratio(&curve, pair, x) - 1.0).abs());
+        let path = Logarithmic { curve, ..path.clone() };
+        Stretch { path, feed: Some(feed * mean), error: error[0].max(error[1]) }
+    };
+    if whole || pair.0 == pair.1 {
+        return vec![part(curve.start(), curve.end())];
+    }
+    let mut n = 1;
+    loop {
+        let breaks = breaks(curve, pair, n);
+        let parts: Vec<Stretch> = breaks.windows(2).map(|pair| part(pair[0], pair[1])).collect();
+        let holds = parts.iter().all(|part| part.error <= machine.feed_error);
+        if holds || MAX_STRETCHES <= n {
+            return parts;
+        }
+        n += 1;
+    }
+}
+
+/// The stretch that a step belongs to, by the X of its end.
+pub fn stretch_of(stretches: &[Stretch], x: f64) -> usize {
+    // A step that ends a rounding behind the end of a stretch still belongs to it.
+    stretches.iter().position(|stretch| x <= stretch.path.curve.end() + 1.0e-9).unwrap_or(stretches.len() - 1)
+}
+
+/// m/n at X.
+fn ratio(curve: &LogCurve, (asked, counted): (Measure, Measure), x: f64) -> f64 {
+    curve.rate(asked, x) / curve.rate(counted, x)
+}
+
+/// The ends of `n` stretches of equal ratio of m/n: bisection on a monotone function.
+fn breaks(curve: &LogCurve, pair: (Measure, Measure), n: usize) -> Vec<f64> {
+    let (start, end) = (curve.start(), curve.end());
+    let at = |x: f64| ln_1p(ratio(curve, pair, x) - 1.0);
+    let (first, last) = (at(start), at(end));
+    let mut breaks = vec![start];
+    for i in 1..n {
+        let wanted = first + (last - first) * i as f64 / n as f64;
+        let (mut low, mut high) = (start, end);
+        // Forty halvings of some metres are a few picometres.
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if (at(middle) < wanted) == (first < last) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let next = 0.5 * (low + high);
+        if breaks.last().is_some_and(|known| *known < next) && next < end {
+            breaks.push(next);
+        }
+    }
+    breaks.push(end);
+    breaks
+}
+
+/// What is wrong with the feed of a path: it cannot be counted.
+///
+/// # Errors
+/// A does not turn and the feed is one of A.
+pub fn check(path: &Logarithmic, feed: Option<f64>) -> Result<(), Diagnostics> {
+    if feed.is_some() && path.along == Measure::A && path.curve.k() == 0.0 {
+        let message = "a feed in degrees of A is asked for, and A does not turn: the flute is straight";
+        return Err(Diagnostic::error("feed-along", message).into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::logcurve::tests::paper;
+    use crate::ir::Method;
+    use crate::source::SourceId;
+
+    fn path(along: Measure) -> Logarithmic {
+        let curve = LogCurve::new(paper(), 0.0).unwrap();
+        Logarithmic { curve, method: Method::Direct, dl: None, overrun: false, back: false, along }
+    }
+
+    fn machine(rotary: &str, error: f64) -> Machine {
+        let text = format!("extends = \"sinumerik\"\n[feed]\nrotary = \"{rotary}\"\nerror = {error}\n");
+        Machine::parse(&text, SourceId::INPUT).unwrap()
+    }
+
+    #[test]
+    fn every_stretch_takes_the_time_that_was_asked() {
+        for along in [Measure::Path, Measure::Edge, Measure::X, Measure::A, Measure::PathAndDegrees] {
+            for rotary in ["free", "degrees-as-mm", "surface"] {
+                let machine = machine(rotary, 0.02);
+                let path = path(along);
+                let parts = stretches(&path, Some(200.0), false, &machine);
+                let minutes: f64 = parts
+                    .iter()
+                    .map(|part| part.path.curve.amount(counted(&machine)) / part.feed.unwrap())
+                    .sum();
+                let asked = path.curve.amount(along) / 200.0;
+                // Simpson's rule is right to some 1e-8.
+                approx::assert_relative_eq!(minutes, asked, max_relative = 1.0e-7);
+                assert!(parts.iter().all(|part| part.error <= 0.02), "{along:?} {rotary}");
+                // Between the ends the error is no greater: the ratio is monotone.
+                for part in &parts {
+                    let curve = &part.path.curve;
+                    let mean = part.feed.unwrap() / 200.0;
+                    for i in 0..=20 {
+                        let x = curve.start() + (curve.end() - curve.start()) * f64::from(i) / 20.0;
+                        let e = mean * ratio(curve, (along, counted(&machine)), x) - 1.0;
+                        assert!(e.abs() <= part.error + 1.0e-12, "{along:?} {rotary} {x}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_stretch_is_enough_where_the_counts_agree() {
+        // dA/dX falls from k to k/1.525 over the paper's cutter, and with degrees as mm so does the speed, nearly.
+        let counts = [("free", 1), ("surface", 1), ("degrees-as-mm", 5)];
+        for (rotary, count) in counts {
+            let machine = machine(rotary, 0.05);
+            assert_eq!(
+                stretches(&path(Measure::Path), Some(200.0), false, &machine).len(),
+                count,
+                "{rotary}"
+            );
+            let whole = stretches(&path(Measure::Path), Some(200.0), true, &machine);
+            assert_eq!(whole.len(), 1);
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! What a person at the machine must know before the start: where zero is, how far each axis goes and how fast, how long
+//! it takes, what the control needs, and what nobody has proved.
+
+use crate::decimal::Decimal;
+use crate::dialect::Form;
+use crate::dialect::parts::Assigned;
+use crate::ir::{Decimals, Intent, Step, Written};
+use crate::machine::{Machine, Moves};
+use crate::pass::{limits, range};
+use crate::units::Kind;
+use serde::Serialize;
+
+/// The figures of a program on one machine.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Setup {
+    /// Where zero is; none where the input does not say.
+    pub zero: Option<String>,
+    /// How far and how fast each axis goes.
+    pub axes: Vec<AxisFigures>,
+    /// Where rapids are clear: an axis and its place.
+    pub clear: Option<(String, f64)>,
+    /// Axes that retract in machine coordinates.
+    pub home: Vec<String>,
+    /// How many paths there are: flutes times passes.
+    pub paths: usize,
+    /// How long a path takes at the feed that was asked for, minutes: from the shortest to the longest.
+    pub path_minutes: Option<[f64; 2]>,
+    /// What the program's parameters are.
+    pub parameters: Vec<String>,
+    /// What the control needs beside its basic functions.
+    pub needs: Vec<String>,
+    /// What the proof does not cover.
+    pub not_covered: Vec<String>,
+}
+
+/// How far and how fast an axis goes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AxisFigures {
+    /// Its name.
+    pub axis: String,
+    /// `mm` or `degrees`.
+    pub unit: &'static str,
+    /// Its least and greatest position, mm or degrees; none where it does not move.
+    pub range: Option<[f64; 2]>,
+    /// Its greatest speed at feed, mm/min or degrees/min.
+    pub speed: f64,
+    /// Whether it moves the work and not the wheel.
+    pub moves_work: bool,
+}
+
+impl Setup {
+    /// The figures of what was asked and of what is written.
+    pub fn new(intent: &Intent, decimals: &Decimals, machine: &Machine) -> Setup {
+        let axes = decimals.program.axes;
+        let extents = range::extents(decimals);
+        let speeds = limits::greatest_speeds(decimals, machine);
+        let figures = (0..axes.count()).map(|i| {
+            let (low, high) = extents[i];
+            AxisFigures {
+                axis: axes.name(i).to_string(),
+                unit: match axes.kind(i) {
+                    Kind::Linear | Kind::Direction => "mm",
+                    Kind::Rotary => "degrees",
+                },
+                range: (low <= high).then_some([low, high]),
+                speed: speeds[i],
+                moves_work: machine.limits(axes.name(i)).moves == Moves::Work,
+            }
+        });
+        let steps = || intent.program.steps.iter().map(|located| &located.step);
+        let home = steps().filter_map(|step| match step {
+            Step::Home(axis) => Some(axes.name(*axis).to_string()),
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_) => None,
+        });
+        let mut home: Vec<String> = home.collect();
+        home.dedup();
+        let minutes: Vec<f64> = intent
+            .logarithmic()
+            .filter_map(|(log, feed, _)| Some(log.curve.amount(log.along) / feed?))
+            .collect();
+        let range = minutes.iter().fold(None, |range: Option<[f64; 2]>, m| {
+            Some(range.map_or([*m, *m], |[least, most]| [least.min(*m), most.max(*m)]))
+        });
+        Setup {
+            zero: zero(intent),
+            axes: figures.collect(),
+            clear: clear(intent),
+            home,
+            paths: minutes.len(),
+            path_minutes: range,
+            parameters: parameters(decimals, machine),
+            needs: needs(decimals, machine),
+            not_covered: ["the control's smoothing and compressor", "the wheel's radius and profile"]
+                .map(str::to_owned)
+                .to_vec(),
+        }
+    }
+
+    /// The remarks behind the header, none where the machine file wants none.
+    pub fn remarks(&self, machine: &Machine) -> Vec<String> {
+        if !machine.frame.setup {
+            return Vec::new();
+        }
+        self.lines().iter().flat_map(|line| wrapped(line, machine)).collect()
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let short = |x: f64, digits: u8| Decimal::round(x, digits).unwrap_or_default().to_string();
+        let mut lines = Vec::new();
+        if let Some(zero) = &self.zero {
+            lines.push(format!("ZERO: {zero}"));
+        }
+        let ranges: Vec<String> = self
+            .axes
+            .iter()
+            .filter_map(|figures| {
+                let [low, high] = figures.range?;
+                Some(format!("{} {} TO {}", figures.axis, short(low, 3), short(high, 3)))
+            })
+            .collect();
+        lines.push(format!("RANGE: {}", ranges.join(", ")));
+        if let Some((axis, to)) = &self.clear {
+            let home = if self.home.is_empty() {
+                String::new()
+            } else {
+                format!(", HOME OF {} AT TOOL CHANGE AND END", self.home.join(" "))
+            };
+            lines.push(format!("CLEAR: {axis} {}{home}", short(*to, 3)));
+        }
+        if let Some([least, most]) = self.path_minutes {
+            let (least, most) = (short(least, 3), short(most, 3));
+            let minutes = if least == most { least } else { format!("{least} TO {most}") };
+            lines.push(format!("TIME: {} PATHS OF {minutes} MIN", self.paths));
+        }
+        let speeds: Vec<String> = self
+            .axes
+            .iter()
+            .filter(|figures| 0.0 < figures.speed)
+            .map(|figures| format!("{} {}", figures.axis, short(figures.speed, 0)))
+            .collect();
+        if !speeds.is_empty() {
+            lines.push(format!("FASTEST AT FEED, MM/MIN OR DEG/MIN: {}", speeds.join(", ")));
+        }
+        let work: Vec<&str> = self
+            .axes
+            .iter()
+            .filter(|figures| figures.moves_work)
+            .map(|figures| figures.axis.as_str())
+            .collect();
+        if !work.is_empty() {
+            lines.push(format!("THE WORK MOVES WITH: {}", work.join(" ")));
+        }
+        if !self.parameters.is_empty() {
+            lines.push(format!("PARAMETERS: {}", self.parameters.join(", ").to_uppercase()));
+        }
+        if !self.needs.is_empty() {
+            lines.push(format!("NEEDS: {}", self.needs.join(", ").to_uppercase()));
+        }
+        lines.push(format!("NOT PROVED: {}", self.not_covered.join(", ").to_uppercase()));
+        lines
+    }
+}
+
+/// A remark in lines of the length that the machine file allows, cut between words.
+pub fn wrapped(text: &str, machine: &Machine) -> Vec<String> {
+    let most = machine.text.comment_length;
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.len() - 1;
+        if lines[last].is_empty() {
+            lines[last].push_str(word);
+        } else if lines[last].len() + 1 + word.len() <= most {
+            lines[last].push(' ');
+            lines[last].push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+/// Where zero is: a cutter's path starts there.
+fn zero(intent: &Intent) -> Option<String> {
+    let (log, ..) = intent.logarithmic().next()?;
+    let axes = intent.program.axes;
+    let [x, y, z, a] = [0, 1, 2, 3].map(|i| axes.name(i));
+    let d1 = Decimal::round(log.curve.cutter().d1, 4).unwrap_or_default();
+    Some(format!("{x} WHERE THE DIAMETER IS D1 {d1}, {y} {z} CONTACT THERE, {a} THE CUTTER'S INDEX"))
+}
+
+/// Where rapids are clear: the first rapid's axis and place.
+fn clear(intent: &Intent) -> Option<(String, f64)> {
+    let axes = intent.program.axes;
+    intent.program.steps.iter().find_map(|located| match &located.step {
+        Step::Rapid(targets) => targets.first().map(|(axis, to)| (axes.name(*axis).to_string(), *to)),
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Cut(_) => None,
+    })
+}
+
+/// What each parameter of a program is.
+fn parameters(decimals: &Decimals, machine: &Machine) -> Vec<String> {
+    let Assigned { corrections, feeds } = Assigned::of(decimals, machine);
+    let letter = machine.dialect.parameter.letter;
+    let shifts = |(axis, _, number): &(usize, Decimal, u32)| {
+        format!("{letter}{number} shifts all paths in {}", decimals.program.axes.name(*axis))
+    };
+    let mut parameters: Vec<String> = corrections.iter().map(shifts).collect();
+    match (feeds.first(), feeds.last()) {
+        (Some((_, first)), Some((_, last))) if first < last => {
+            parameters.push(format!("{letter}{first} to {letter}{last} feeds"));
+        }
+        (Some((_, first)), _) => parameters.push(format!("{letter}{first} feed")),
+        (None, _) => {}
+    }
+    parameters
+}
+
+/// What the motions of a program need.
+fn needs(decimals: &Decimals, machine: &Machine) -> Vec<String> {
+    let mut needs: Vec<String> = Vec::new();
+    for cut in decimals.program.steps.iter().filter_map(|located| located.step.cut()) {
+        let form = match &cut.curve {
+            Written::Lines(_) => continue,
+            Written::Polynomial(_) => None,
+            Written::Nurbs(_) => Some(Form::Nurbs),
+            Written::Through(kind, _) => Some(Form::Through(*kind)),
+        };
+        let motion = machine.dialect.motions.iter().find(|motion| match form {
+            None => matches!(motion.form, Form::Polynomial { .. }),
+            Some(form) => motion.form == form,
+        });
+        if let Some(motion) = motion.filter(|motion| !motion.needs.is_empty())
+            && !needs.iter().any(|known| known == motion.needs)
+        {
+            needs.push(motion.needs.to_owned());
+        }
+    }
+    needs
+}
