@@ -1,16 +1,12 @@
 //! What spline and polynomial blocks must carry.
 
-use super::run::Move;
+use super::state::Move;
 use super::words::{Dialect, Motion};
-use super::{Job, Rule, Violation};
+use super::{Job, NOISE, Rule, Violation};
 use std::collections::BTreeSet;
 
 /// How far from the tool a Heidenhain control lets an SPL block start, mm and degrees: 1 µm by its manual.
 const CLOSING: f64 = 0.001;
-
-/// Floating-point noise. Numbers stay below 1e3, so that an operation costs at most 1e3 · 2⁻⁵³ ≈ 1e-13, and none here
-/// takes more than a hundred; taken up by two powers of ten, and still a thousandth of what a program can write.
-const NOISE: f64 = 1.0e-9;
 
 /// The rules of each block, then those of whole runs.
 pub(super) fn check(job: &Job, moves: &[Move]) -> Vec<Violation> {
@@ -39,7 +35,7 @@ pub(super) fn check(job: &Job, moves: &[Move]) -> Vec<Violation> {
 }
 
 /// Blocks of one motion; each spline word begins a run.
-fn runs(moves: &[Move]) -> impl Iterator<Item = &[Move]> {
+pub(super) fn runs(moves: &[Move]) -> impl Iterator<Item = &[Move]> {
     moves.chunk_by(|a, b| a.modal.motion == b.modal.motion && !b.opens)
 }
 
@@ -73,7 +69,9 @@ fn upath(job: &Job, step: &Move, violations: &mut Vec<Violation>) {
     let geometry = vec!['X', 'Y', 'Z'];
     let group = step.modal.group.as_ref().unwrap_or(&geometry);
     let bends = |axis: char| step.factors.keys().any(|(bent, _)| *bent == axis);
-    let moves = |axis: char, to: &f64| bends(axis) || step.from.get(&axis) != Some(to);
+    let moves = |axis: char, to: &f64| {
+        bends(axis) || step.from.get(&axis).is_none_or(|from| NOISE < (from - to).abs())
+    };
     if !step.targets.iter().any(|(axis, to)| !group.contains(axis) && moves(*axis, to)) {
         return;
     }
@@ -148,13 +146,14 @@ fn nurbs(run: &[Move], violations: &mut Vec<Violation>) {
         wrong(last, "an end of the knots is not as manifold as P");
     }
     // Both are printed with the same decimals. Where the tool is nobody knows, another rule speaks.
-    if first.targets.iter().any(|(axis, to)| first.from.get(axis).is_some_and(|from| from != to)) {
+    let away = |axis: &char, to: &f64| first.from.get(axis).is_some_and(|from| NOISE < (from - to).abs());
+    if first.targets.iter().any(|(axis, to)| away(axis, to)) {
         wrong(first, "the first control point is not where the tool is");
     }
 }
 
-/// A spline block stays within one turn of a modulo axis. A curve stays within the hull of its control points, so that
-/// this is on the safe side; of a spline through points only the points are known.
+/// A spline block stays between 0 and 360 of a modulo axis, as the text counts it. A curve stays within the hull of its
+/// control points, so that this is on the safe side; of a spline through points only the points are known.
 fn modulo(job: &Job, step: &Move, violations: &mut Vec<Violation>) {
     if matches!(step.modal.motion, Some(Motion::Rapid | Motion::Line) | None) {
         return;
@@ -165,16 +164,14 @@ fn modulo(job: &Job, step: &Move, violations: &mut Vec<Violation>) {
         hull.extend(bernstein(&powers(step, *axis, *from, *to)));
         let (low, high) =
             hull.iter().fold((*from, *from), |(low, high), value| (low.min(*value), high.max(*value)));
-        // The end of a turn is the beginning of the next, and belongs to both.
-        let turn = ((low + NOISE) / 360.0).floor();
-        if (turn + 1.0) * 360.0 + NOISE < high {
-            violations.push(step.violation(Rule::Modulo, format!("{axis} runs over a full turn")));
+        if low < -NOISE || 360.0 + NOISE < high {
+            violations.push(step.violation(Rule::Modulo, format!("{axis} leaves 0 to 360")));
         }
     }
 }
 
 /// c0 + c1 u + c2 u² + … with u from 0 to 1, of a polynomial block; nothing of others.
-fn powers(step: &Move, axis: char, from: f64, to: f64) -> Vec<f64> {
+pub(super) fn powers(step: &Move, axis: char, from: f64, to: f64) -> Vec<f64> {
     let factor = |power: usize| step.factors.get(&(axis, power)).copied().unwrap_or_default();
     match step.modal.motion {
         // A + K1 t + K2 t² + K3 t³ with t from 1 to 0.

@@ -3,7 +3,8 @@
 //! Nothing else is in force then, and no axis is anywhere. The moves must be those of the whole program, so that each
 //! modal word that matters has to stand in the section again.
 
-use super::run::{Move, run};
+use super::run::run;
+use super::state::Move;
 use super::words::{Block, Motion};
 use super::{Job, Rule, Violation};
 
@@ -21,6 +22,10 @@ pub(super) fn check(job: &Job, blocks: &[Block], whole: &[Move]) -> Vec<Violatio
         let found = expected.iter().zip(&alone).find_map(|(expected, alone)| {
             Some(expected.violation(Rule::Restart, difference(expected, alone)?))
         });
+        let named = expected.first().filter(|step| !step.opens);
+        let found = found.or_else(|| {
+            Some(named?.violation(Rule::Restart, "the section does not begin with a word of motion"))
+        });
         let missing = || {
             let step = expected.first().filter(|_| expected.len() != alone.len())?;
             Some(step.violation(Rule::Restart, "there are other moves"))
@@ -30,11 +35,11 @@ pub(super) fn check(job: &Job, blocks: &[Block], whole: &[Move]) -> Vec<Violatio
     violations
 }
 
-/// What stands before the first remark, and from each remark to the next.
+/// What stands before the first section, and from each of their remarks to the next.
 fn sections(blocks: &[Block]) -> Vec<Vec<Block>> {
     let mut sections = vec![Vec::new()];
     for block in blocks {
-        if block.remark {
+        if block.section.is_some() {
             sections.push(Vec::new());
         }
         sections.last_mut().expect("one is there from the start").push(block.clone());
@@ -42,15 +47,22 @@ fn sections(blocks: &[Block]) -> Vec<Vec<Block>> {
     sections
 }
 
+/// Whether it does not matter where a move comes from.
+fn place_is_free(step: &Move) -> bool {
+    step.modal.motion == Some(Motion::Rapid)
+}
+
 /// The first thing in which a move differs.
 fn difference(expected: &Move, alone: &Move) -> Option<String> {
     let (was, is) = (&expected.modal, &alone.modal);
-    let modal: [(&str, bool); 10] = [
+    let modal: [(&str, bool); 12] = [
         ("motion", was.motion == is.motion),
         ("feed", was.feed == is.feed),
         ("tool", (was.tool, was.changed) == (is.tool, is.changed)),
         ("tool length", was.length == is.length),
         ("spindle", (was.speed, was.turns) == (is.speed, is.turns)),
+        ("coolant", was.coolant == is.coolant),
+        ("work offset", was.zeros == is.zeros),
         ("UPATH", was.upath == is.upath),
         ("SPLINEPATH", was.spline_path == is.spline_path),
         ("FGROUP", was.group == is.group),
@@ -67,13 +79,14 @@ fn difference(expected: &Move, alone: &Move) -> Option<String> {
     }
     assert_eq!(was, is, "something modal is not compared");
     // A rapid moves one axis and says where to; where it comes from does not matter.
-    let place = was.motion == Some(Motion::Rapid) || expected.from == alone.from;
+    let place = place_is_free(expected) || expected.from == alone.from;
     if !place {
         return Some("an axis is not positioned again".to_owned());
     }
     let same = expected.line == alone.line
         && expected.opens == alone.opens
         && expected.targets == alone.targets
+        && (place_is_free(expected) || expected.by == alone.by)
         && expected.factors == alone.factors
         && (expected.knot, expected.weight, expected.order) == (alone.knot, alone.weight, alone.order);
     (!same).then(|| "there are other moves".to_owned())
