@@ -40,7 +40,7 @@ pub struct AxisFigures {
     pub axis: String,
     /// `mm` or `degrees`.
     pub unit: &'static str,
-    /// Its least and greatest position, mm or degrees; none where it does not move.
+    /// Its least and greatest position as the text counts it, mm or degrees; none where it does not move.
     pub range: Option<[f64; 2]>,
     /// Its greatest speed at feed, mm/min or degrees/min.
     pub speed: f64,
@@ -52,7 +52,7 @@ impl Setup {
     /// The figures of what was asked and of what is written.
     pub fn new(intent: &Intent, decimals: &Decimals, machine: &Machine) -> Setup {
         let axes = decimals.program.axes;
-        let extents = range::extents(decimals);
+        let extents = range::counted_extents(decimals, machine);
         let speeds = limits::greatest_speeds(decimals, machine);
         let figures = (0..axes.count()).map(|i| {
             let (low, high) = extents[i];

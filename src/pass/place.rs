@@ -30,6 +30,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
     }
     let machine = machine.with_axes(&intent.program.axes)?;
     homes(&mut intent, &machine);
+    position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
     Ok(intent)
 }
@@ -46,6 +47,44 @@ fn homes(intent: &mut Intent, machine: &Machine) {
         | Step::Rapid(_)
         | Step::Cut(_) => true,
     });
+}
+
+/// From its home the tool goes over the work before it goes down: the rapids of the linear axes that the first section
+/// makes in clear air are made once more before it.
+fn position_at_home(intent: &mut Intent) {
+    let axes = intent.program.axes;
+    let steps = &mut intent.program.steps;
+    let home = steps.iter().find_map(|located| match located.step {
+        Step::Home(axis) => Some(axis),
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Shift(_)
+        | Step::Rapid(_)
+        | Step::Cut(_) => None,
+    });
+    let Some(home) = home else { return };
+    let Some(first) = steps.iter().position(|located| matches!(located.step, Step::Comment(_))) else {
+        return;
+    };
+    let moves = steps[first..].iter().take_while(|located| located.step.cut().is_none());
+    let over: Vec<Located<f64, Curve>> = moves
+        .filter(|located| match &located.step {
+            Step::Rapid(targets) => {
+                targets.iter().all(|(axis, _)| *axis != home && axes.kind(*axis) == Kind::Linear)
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Cut(_) => false,
+        })
+        .cloned()
+        .collect();
+    steps.splice(first..first, over);
 }
 
 /// The first rotary axis, the one that a flute turns.

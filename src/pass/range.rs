@@ -23,6 +23,33 @@ pub fn extents(decimals: &Decimals) -> [(f64, f64); MAX_AXES] {
     reach.0
 }
 
+/// The same as the text counts it: from the work offsets in force, and the control's own way round.
+pub fn counted_extents(decimals: &Decimals, machine: &Machine) -> [(f64, f64); MAX_AXES] {
+    let mut zero = [0.0; MAX_AXES];
+    let mut all = Reach::new();
+    let reversed = machine.reversed();
+    for located in &decimals.program.steps {
+        if let Step::Shift(shifts) = &located.step {
+            for shift in shifts {
+                zero[shift.axis] = shift.to.to_f64();
+            }
+        }
+        let mut reach = Reach::new();
+        reach.step(decimals, &located.step);
+        for (axis, (low, high)) in reach.0.into_iter().enumerate().filter(|(_, (low, high))| low <= high) {
+            let (low, high) = turned((low - zero[axis], high - zero[axis]), reversed[axis]);
+            all.take(axis, low);
+            all.take(axis, high);
+        }
+    }
+    all.0
+}
+
+/// A range as an axis that counts the other way has it.
+fn turned((low, high): (f64, f64), reversed: bool) -> (f64, f64) {
+    if reversed { (0.0 - high, 0.0 - low) } else { (low, high) }
+}
+
 /// What is wrong with the places that a program goes to.
 pub(super) fn positions(decimals: &Decimals, machine: &Machine) -> Diagnostics {
     let mut found = Diagnostics::new();
@@ -44,7 +71,9 @@ pub(super) fn positions(decimals: &Decimals, machine: &Machine) -> Diagnostics {
             found.extend(wraps(decimals, machine, i).map(Diagnostics::from).unwrap_or_default());
             continue;
         }
-        let (least, most) = (limits.min.unwrap_or(f64::NEG_INFINITY), limits.max.unwrap_or(f64::INFINITY));
+        // The limits are the control's own figures.
+        let stated = (limits.min.unwrap_or(f64::NEG_INFINITY), limits.max.unwrap_or(f64::INFINITY));
+        let (least, most) = turned(stated, limits.reversed);
         if low < least || most < high {
             let range = match (limits.min, limits.max) {
                 (Some(min), Some(max)) => format!("{min} to {max}"),
@@ -53,7 +82,9 @@ pub(super) fn positions(decimals: &Decimals, machine: &Machine) -> Diagnostics {
                 (None, None) => String::new(),
             };
             let message = format!(
-                "{axis} goes from {low:.4} to {high:.4}, beyond the {range} of machine `{}`",
+                "{axis} goes from {:.4} to {:.4}, beyond the {range} of machine `{}`",
+                turned((low, high), limits.reversed).0,
+                turned((low, high), limits.reversed).1,
                 machine.name
             );
             found.push(placed(Diagnostic::refusal("axis-range", message), decimals, i, (least, most)));

@@ -105,8 +105,8 @@ fn blocks_of_one_word(dialect: &str) -> Vec<String> {
             "L F MAX",
             "L FQ1",
             "L IA+5",
-            "FN 0: Q1 =+5",
-            "FN 0: Q1 = 5",
+            "FN 0: Q1=+5",
+            "FN 0: Q1= 5",
         ]
         .map(str::to_owned);
         return moves.chain(words.iter().cloned()).chain(others).collect();

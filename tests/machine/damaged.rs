@@ -136,17 +136,17 @@ fn a_report_names_the_line() {
         (
             "conical-mill/sinumerik.mpf",
             [Edit::Put("Z0 F200", 1, "Z0")],
-            "27: Feed: no feed is in force for this move",
+            "29: Feed: no feed is in force for this move",
         ),
         (
             "cylinder/heidenhain-spl.h",
             [Edit::Put("A+137.8322", 1, "A+137.9")],
-            "37: Spl: A starts 0.067800 from the tool",
+            "39: Spl: A starts 0.067800 from the tool",
         ),
         (
             "long-cone/mazak-g062.eia",
             [Edit::Drop("K5.8426", 4)],
-            "35: Nurbs: the blocks with K alone are not as many as P",
+            "37: Nurbs: the blocks with K alone are not as many as P",
         ),
     ] {
         let reports: Vec<String> = damaged(file, &edits).iter().map(Violation::to_string).collect();

@@ -1,4 +1,4 @@
-//! Every section alone, as an operator restarts: the lines before the first section that moves, then this one.
+//! Every section alone, as an operator restarts: the lines before the first section, then this one.
 //!
 //! Nothing else is in force then, and no axis is anywhere. The moves must be those of the whole program, so that each
 //! modal word that matters has to stand in the section again.
@@ -10,15 +10,17 @@ use super::{Job, Rule, Violation};
 
 /// Compares each section alone with the whole program.
 pub(super) fn check(job: &Job, blocks: &[Block], whole: &[Move]) -> Vec<Violation> {
-    let Some(first) = whole.first() else { return Vec::new() };
     let sections = sections(blocks);
-    let (before, moving) = sections.split_at(first.section);
+    // Nothing of what stands before the first section is a section: it is run before each of them.
+    let first = 1.min(sections.len());
+    let (before, moving) = sections.split_at(first);
     let before: Vec<Block> = before.concat();
     let mut violations = Vec::new();
-    for (section, blocks) in (first.section..).zip(moving) {
+    for (section, blocks) in (first..).zip(moving) {
         let expected: Vec<&Move> = whole.iter().filter(|step| step.section == section).collect();
         let program = [before.as_slice(), blocks.as_slice()].concat();
-        let alone = run(job, &program).moves;
+        let mut alone = run(job, &program).moves;
+        alone.retain(|step| step.section == first);
         let found = expected.iter().zip(&alone).find_map(|(expected, alone)| {
             Some(expected.violation(Rule::Restart, difference(expected, alone)?))
         });

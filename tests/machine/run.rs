@@ -502,8 +502,16 @@ impl Control<'_> {
         } else {
             self.require(self.is_clear(), Rule::Clear, "a rapid before the tool is clear");
         }
+        // Before the first section, from its home, the tool goes over the work.
+        let over = self.sections == 0 && self.home;
+        if retracts && self.home && !over {
+            let linear =
+                self.axes.iter().filter(|axis| **axis != self.job.retract.0 && !"ABC".contains(**axis));
+            let placed = linear.copied().all(|axis| self.at.contains_key(&axis));
+            self.require(placed, Rule::Clear, "the tool goes down from home before it is over the work");
+        }
         self.require(
-            self.section.begun || retracts,
+            self.section.begun || retracts || over,
             Rule::Clear,
             "a section does not begin with the retraction",
         );

@@ -76,7 +76,7 @@ pub const DIALECT: Dialect = Dialect {
         Motion { name: "linear", form: Form::Lines, about: "L", needs: "" },
     ],
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
-    parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n} ={value}", word: |n| format!("Q{n}") },
+    parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
     round: Round::Step,
     write: write::write,
     read: read::read,

@@ -272,7 +272,9 @@ mod tests {
         assert!(curve[1..4].iter().all(|line| line.starts_with("K0. X") && line.contains(" A")), "{curve:?}");
         assert!(curve[4..].iter().all(|line| *line == curve[4] && line.split(' ').count() == 1), "{curve:?}");
         assert!(
-            output.text.contains("\nT1 M6\nS3000 M3\n(FLUTE 1 OF 2, A 0)\nG0 G43 H1 Z50.\nX0.\n"),
+            output
+                .text
+                .contains("\nT1 M6\nS3000 M3\nG0 X0.\nY0.\n(FLUTE 1 OF 2, A 0)\nG0 G43 H1 Z50.\nX0.\n"),
             "{}",
             output.text
         );

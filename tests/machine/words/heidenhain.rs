@@ -51,9 +51,9 @@ fn datum(block: &mut Block, part: &str, shift: &str) {
     }
 }
 
-/// `Q1` and `=+200`, behind `FN 0:`.
+/// `Q1` and `+200` of `FN 0: Q1=+200`.
 fn assign(block: &mut Block, name: &str, to: &str) {
-    match (value('Q', name), to.strip_prefix('=').and_then(number)) {
+    match (value('Q', name), number(to)) {
         (Some(Value::Parameter(of)), Some(number)) => block.assign = Some((of, number)),
         _ => block.fault(name),
     }
@@ -92,7 +92,10 @@ fn klartext(line: usize, text: &str) -> Block {
         ["CYCL", "DEF", part, shift] if part.starts_with("7.") && shift.is_ascii() => {
             datum(&mut block, part, shift);
         }
-        ["FN", "0:", name, to] => assign(&mut block, name, to),
+        ["FN", "0:", assignment] => match assignment.split_once('=') {
+            Some((name, to)) => assign(&mut block, name, to),
+            None => block.fault(assignment),
+        },
         ["CALL", "LBL", label] => block.flow = Some(Flow::Call((*label).to_owned(), None)),
         ["LBL", "0"] => block.flow = Some(Flow::Return),
         ["LBL", label] => block.flow = Some(Flow::Label((*label).to_owned())),
