@@ -197,12 +197,14 @@ pub struct Polyline {
     pub stride: usize,
     /// The points after the start.
     pub values: Vec<f64>,
+    /// How often a minute each line could be made, where that is its feed; otherwise empty.
+    pub rates: Vec<f64>,
 }
 
 impl Polyline {
     /// A polyline of no points yet.
     pub fn new(start: Position, stride: usize) -> Polyline {
-        Polyline { start, stride, values: Vec::new() }
+        Polyline { start, stride, values: Vec::new(), rates: Vec::new() }
     }
 
     /// The same line from its end to its start.
@@ -212,6 +214,7 @@ impl Polyline {
         points.reverse();
         let mut line = Polyline::new(points[0], self.stride);
         points[1..].iter().for_each(|point| line.push(point));
+        line.rates = self.rates.iter().rev().copied().collect();
         line
     }
 
@@ -280,6 +283,8 @@ pub struct WrittenPoints {
     pub units: Vec<i64>,
     /// The line of the text that each point came from; empty where there is no text yet.
     pub lines: Vec<u32>,
+    /// F of each line under inverse time, 1/min; otherwise empty.
+    pub rates: Vec<Decimal>,
 }
 
 impl WrittenPoints {

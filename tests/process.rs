@@ -150,6 +150,36 @@ fn feeds_are_along_what_was_asked() {
     }
 }
 
+/// Under inverse time every line has its time: the whole is what was asked, from either end and by either method.
+#[test]
+fn lines_in_inverse_time_take_what_was_asked() {
+    let machine = machine("extends = \"mazak\"\n[feed]\nrotary = \"inverse-time\"\n");
+    for interpolation in ["", "method = \"direct\"", "method = \"odd-even\"\ndl = 1.0\ntolerance = 0.01"] {
+        for travel in ["from-D1", "to-D1"] {
+            let input = input(PAPER, interpolation)
+                .replace("[process]", &format!("[process]\ntravel = \"{travel}\""));
+            let output =
+                compiled(&input, &machine, None).unwrap_or_else(|e| panic!("{interpolation}: {e:?}"));
+            let report = output.report.expect("a report");
+            let asked = report.cutting_length / 200.0;
+            // F is rounded to 0.001 of some hundreds; Simpson's rule is right to some 1e-8 on lines of a millimetre.
+            approx::assert_relative_eq!(report.minutes, asked, max_relative = 1.0e-5);
+            let lines = output
+                .text
+                .lines()
+                .skip_while(|line| !line.contains("G93"))
+                .take_while(|line| !line.contains("G0"));
+            assert!(lines.clone().all(|line| line.contains(" F")), "{interpolation}");
+            assert!(0 < lines.count());
+        }
+    }
+    let spline = machine.dialect.motion("g06.2");
+    assert_eq!(
+        ids(&compiled(&input(PAPER, ""), &machine, spline).expect_err("no time")),
+        ["inverse-time-lines"]
+    );
+}
+
 /// A control that counts A the other way, and calls its axes otherwise, makes the same path.
 #[test]
 fn axes_have_other_names_and_signs() {

@@ -23,6 +23,10 @@ pub struct Assembler<'m> {
     pub position: [Option<i64>; MAX_AXES],
     /// The feed in force.
     pub feed: Option<Decimal>,
+    /// Whether F is inverse time.
+    pub inverse: bool,
+    /// F of the line that comes next, under inverse time.
+    pub rate: Option<Decimal>,
     /// What is wrong or strange.
     pub diagnostics: Diagnostics,
     /// The program's name.
@@ -58,6 +62,8 @@ impl<'m> Assembler<'m> {
             digits: machine.axis_digits(),
             position: [None; MAX_AXES],
             feed: None,
+            inverse: false,
+            rate: None,
             diagnostics: Diagnostics::new(),
             name: String::new(),
             number: 0,
@@ -253,17 +259,25 @@ impl<'m> Assembler<'m> {
     pub fn line(&mut self, named: &[(usize, i64)], line: u32, span: Span) {
         let stride = self.machine.axes.count();
         let target = self.target(named);
-        if self.run.is_some() && self.run_feed != self.feed {
+        let feed = if self.inverse { None } else { self.feed };
+        let timed = self.run.as_ref().map(|(points, _)| !points.rates.is_empty());
+        if timed.is_some_and(|timed| timed != self.inverse || self.run_feed != feed) {
             self.flush();
         }
         if self.run.is_none() {
             let start = self.start(&target, span);
-            self.run_feed = self.feed;
-            self.run = Some((WrittenPoints { start, stride, units: Vec::new(), lines: Vec::new() }, span));
+            self.run_feed = feed;
+            self.run = Some((
+                WrittenPoints { start, stride, units: Vec::new(), lines: Vec::new(), rates: Vec::new() },
+                span,
+            ));
         }
         if let Some((points, whole)) = &mut self.run {
             points.units.extend_from_slice(&target[..stride]);
             points.lines.push(line);
+            if self.inverse {
+                points.rates.extend(self.rate);
+            }
             whole.end = span.end;
         }
         self.arrive(&target);

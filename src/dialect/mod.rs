@@ -43,6 +43,8 @@ pub struct Dialect {
     pub naming: (&'static str, fn(&str) -> bool),
     /// How parameters of a program are spelled.
     pub parameter: Parameter,
+    /// Whether F can be inverse time.
+    pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
     pub round: Round,
     /// Spells a legal program.

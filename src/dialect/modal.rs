@@ -5,7 +5,7 @@
 use super::Round;
 use crate::decimal::{Decimal, Spelling, power_of_ten, write_units};
 use crate::ir::{Shift, Units, WrittenPoints};
-use crate::machine::Machine;
+use crate::machine::{Machine, RotaryFeed};
 use crate::units::MAX_AXES;
 
 /// A program text in the making, and the modal state behind it.
@@ -31,6 +31,8 @@ pub struct Modal<'m> {
     pub motion: Option<&'static str>,
     /// The feed in force.
     pub feed: Option<Decimal>,
+    /// Whether F is known to be inverse time.
+    inverse: Option<bool>,
     number: u32,
 }
 
@@ -49,6 +51,7 @@ impl<'m> Modal<'m> {
             position: [None; MAX_AXES],
             motion: None,
             feed: None,
+            inverse: None,
             number: machine.text.number_start,
         }
     }
@@ -58,6 +61,7 @@ impl<'m> Modal<'m> {
         self.position = [None; MAX_AXES];
         self.motion = None;
         self.feed = None;
+        self.inverse = None;
     }
 
     /// Writes text.
@@ -104,6 +108,23 @@ impl<'m> Modal<'m> {
             self.gap();
             self.motion = Some(word);
         }
+    }
+
+    /// G93 or G94, where F counts inverse time on this machine and the other holds.
+    pub fn inverse(&mut self, on: bool) {
+        if self.machine.rotary_feed == RotaryFeed::InverseTime && self.inverse != Some(on) {
+            self.text(if on { "G93" } else { "G94" });
+            self.gap();
+            self.inverse = Some(on);
+            self.feed = None;
+        }
+    }
+
+    /// F of one line under inverse time.
+    pub fn rate(&mut self, rate: Decimal) {
+        self.out.push(b'F');
+        rate.write(&mut self.out, Spelling { sign_always: false, ..self.spelling });
+        self.gap();
     }
 
     /// F, where another is in force: a number, which is never negative and has no sign, or the parameter that holds it.

@@ -124,8 +124,14 @@ impl Reader {
                 "free" => RotaryFeed::Free,
                 "degrees-as-mm" => RotaryFeed::DegreesAsMm,
                 "surface" => RotaryFeed::Surface,
+                "inverse-time" if dialect.inverse_time => RotaryFeed::InverseTime,
+                "inverse-time" => {
+                    let message = format!("{} has no feed in inverse time", dialect.name);
+                    self.error("feed-rotary", message, word.span());
+                    RotaryFeed::Free
+                }
                 _ => {
-                    let message = "rotary is \"free\", \"degrees-as-mm\" or \"surface\"";
+                    let message = "rotary is \"free\", \"degrees-as-mm\", \"surface\" or \"inverse-time\"";
                     self.error("feed-rotary", message, word.span());
                     RotaryFeed::Free
                 }

@@ -227,8 +227,8 @@ pub(super) struct TextFile {
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FeedFile {
-    /// What F counts of rotary axes beside linear ones. free: nothing; degrees-as-mm: a degree as a mm; surface: mm at the cutter's surface.
-    #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm", "surface"]))]
+    /// What F counts of rotary axes beside linear ones. free: nothing; degrees-as-mm: a degree as a mm; surface: mm at the cutter's surface; inverse-time: lines have their time.
+    #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm", "surface", "inverse-time"]))]
     pub(super) rotary: Option<Spanned<String>>,
     /// How far the speed may be from the one asked for inside a block, as a share; beyond it paths are cut into more blocks.
     #[schemars(with = "Option<f64>")]

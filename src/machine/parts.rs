@@ -52,6 +52,8 @@ pub enum RotaryFeed {
     DegreesAsMm,
     /// F is the speed along the path of all axes, rotary ones counted in mm at the cutter's surface.
     Surface,
+    /// Lines have their time as F, in 1/min; other blocks move linear axes only.
+    InverseTime,
 }
 
 /// What one axis can do.

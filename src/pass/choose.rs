@@ -7,7 +7,7 @@ use super::{convert, interpolate, place, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Form, Motion};
 use crate::ir::{Curve, Cut, Intent, Method, Program, Role};
-use crate::machine::Machine;
+use crate::machine::{Machine, RotaryFeed};
 use crate::units::Axis;
 
 /// The motion for an intent.
@@ -27,12 +27,16 @@ pub fn choose(
         Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
     });
     let winds = place::winds(intent, machine);
+    let turns = intent.logarithmic().any(|(log, ..)| log.curve.k() != 0.0);
+    let timed = turns && machine.rotary_feed == RotaryFeed::InverseTime;
     let mut best: Option<(usize, &'static Motion)> = None;
     let mut errors = Diagnostics::new();
     for motion in machine.dialect.motions {
         let allowed = match motion.form {
             Form::Lines => true,
-            Form::Polynomial { .. } | Form::Nurbs => blocked.is_empty() && !straight && winds.is_none(),
+            Form::Polynomial { .. } | Form::Nurbs => {
+                blocked.is_empty() && !straight && winds.is_none() && !timed
+            }
             Form::Through(_) => false,
         };
         if !allowed {

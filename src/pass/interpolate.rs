@@ -6,9 +6,9 @@ use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
 use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Step};
-use crate::machine::Machine;
+use crate::machine::{Machine, RotaryFeed};
 use crate::pass::settle::{steps, through_points};
-use crate::pass::stretch::{Stretch, stretch_of, stretches};
+use crate::pass::stretch::{Stretch, rate, stretch_of, stretches};
 use crate::source::Span;
 use crate::units::DEGREES;
 
@@ -43,6 +43,15 @@ pub fn interpolate(
                 } else {
                     cuts = points(log, &stretches, form, modulo, (tolerance, asked)).map_err(refused)?;
                 }
+                if machine.rotary_feed == RotaryFeed::InverseTime && log.curve.k() != 0.0 {
+                    if form != Form::Lines {
+                        let message = "under inverse time only lines can move a rotary axis";
+                        return Err(Diagnostic::refusal("inverse-time-lines", message)
+                            .at(located.span, "")
+                            .into());
+                    }
+                    timed(log, *feed, &mut cuts);
+                }
                 if log.back {
                     cuts = cuts.into_iter().rev().map(|(feed, curve)| (feed, reversed(curve))).collect();
                 }
@@ -63,6 +72,17 @@ pub fn interpolate(
     }
     let Program { name, number, axes, .. } = &intent.program;
     Ok(Program { name: name.clone(), number: *number, axes: *axes, steps })
+}
+
+/// Gives every line its own F, the time that its way is to take.
+fn timed(log: &Logarithmic, feed: Option<f64>, cuts: &mut [(Option<f64>, Curve)]) {
+    let Some(feed) = feed else { return };
+    for (_, curve) in cuts {
+        let Curve::Lines(line) = curve else { continue };
+        let xs: Vec<f64> =
+            std::iter::once(line.start[0]).chain(line.points().map(|point| point[0])).collect();
+        line.rates = xs.windows(2).map(|pair| rate(log, feed, pair[0], pair[1])).collect();
+    }
 }
 
 /// A path run the other way.

@@ -11,7 +11,7 @@
 //! Bernstein coefficients, so that no figure is too low. Where F counts mm at the surface, the rotary axis' share of L′ is
 //! left out, and the figures are too high rather than too low. Starts, stops and corners are not in it.
 
-use crate::decimal::power_of_ten;
+use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bernstein::Bernstein;
 use crate::geom::bezier::Bezier;
@@ -112,8 +112,17 @@ fn figures(decimals: &Decimals, machine: &Machine, wanted: &[usize]) -> (Figures
         }
     };
     for located in &decimals.program.steps {
-        let Some(Cut { feed: Some(feed), curve, .. }) = located.step.cut() else { continue };
-        let (feed, span) = (feed.to_f64(), located.span);
+        let Some(Cut { feed, curve, .. }) = located.step.cut() else { continue };
+        let span = located.span;
+        if let Written::Lines(line) = curve
+            && !line.rates.is_empty()
+        {
+            for &axis in wanted {
+                take(&mut speeds, axis, timed(decimals, line, axis, span));
+            }
+            continue;
+        }
+        let Some(feed) = feed.map(Decimal::to_f64) else { continue };
         if let Written::Lines(line) | Written::Through(_, line) = curve {
             let shares = steepest(decimals, line, &counts);
             for &axis in wanted {
@@ -138,6 +147,21 @@ fn figures(decimals: &Decimals, machine: &Machine, wanted: &[usize]) -> (Figures
         });
     }
     (speeds, accelerations)
+}
+
+/// The greatest speed of an axis where each line has its time.
+fn timed(decimals: &Decimals, line: &WrittenPoints, axis: usize, span: Span) -> Most {
+    let mut most = Most { amount: 0.0, at: decimals.position(&line.start), span };
+    let mut from = most.at;
+    for (point, rate) in line.points().zip(&line.rates) {
+        let to = decimals.position(&point);
+        let amount = (to[axis] - from[axis]).abs() * rate.to_f64();
+        if most.amount < amount {
+            most = Most { amount, at: from, span };
+        }
+        from = to;
+    }
+    most
 }
 
 /// Of each axis the greatest share of a line's way, and the line: its way by that of the axes that F counts. A line that

@@ -83,9 +83,13 @@ pub fn quantise(
         let step = quantiser.step(step).map_err(|Unwritable| {
             Diagnostic::error("number-range", "a number is too large for the machine's decimals").at(span, "")
         })?;
-        if let Step::Cut(Cut { feed: Some(feed), .. }) = &step
-            && feed.is_zero()
-        {
+        let zero = step.cut().is_some_and(|cut| match &cut.curve {
+            Written::Lines(line) if !line.rates.is_empty() => line.rates.iter().any(|rate| rate.is_zero()),
+            Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
+                cut.feed.is_some_and(Decimal::is_zero)
+            }
+        });
+        if zero {
             return Err(Diagnostic::error("feed-rounds-to-zero", "the feed rounds to zero")
                 .at(span, "")
                 .into());
@@ -165,7 +169,8 @@ impl Quantiser<'_> {
                 Step::Rapid(rounded)
             }
             Step::Cut(Cut { feed, role, curve }) => {
-                let feed = feed.map(rate).transpose()?;
+                let timed = matches!(&curve, Curve::Lines(line) if !line.rates.is_empty());
+                let feed = if timed { None } else { feed.map(rate).transpose()? };
                 Step::Cut(Cut { feed, role, curve: self.curve(curve, role)? })
             }
         })
@@ -194,7 +199,9 @@ impl Quantiser<'_> {
             end[..line.stride].copy_from_slice(last);
         }
         self.arrive(&end);
-        Ok(WrittenPoints { start, stride: line.stride, units, lines: Vec::new() })
+        let rate = |x: &f64| Decimal::round(*x, self.machine.digits.feed).ok_or(Unwritable);
+        let rates = line.rates.iter().map(rate).collect::<Result<Vec<Decimal>, Unwritable>>()?;
+        Ok(WrittenPoints { start, stride: line.stride, units, lines: Vec::new(), rates })
     }
 
     fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {

@@ -38,7 +38,16 @@ pub fn counted(machine: &Machine) -> Measure {
         RotaryFeed::Free => Measure::Path,
         RotaryFeed::DegreesAsMm => Measure::PathAndDegrees,
         RotaryFeed::Surface => Measure::Edge,
+        // What lines count is time; other blocks move linear axes only.
+        RotaryFeed::InverseTime => Measure::Path,
     }
+}
+
+/// How often a minute the way between two X could be made at a feed: F under inverse time. One interval of Simpson's rule,
+/// since a line is short.
+pub fn rate(path: &Logarithmic, feed: f64, from: f64, to: f64) -> f64 {
+    let at = |x: f64| path.curve.rate(path.along, x);
+    6.0 * feed / ((to - from).abs() * (at(from) + 4.0 * at(0.5 * (from + to)) + at(to)))
 }
 
 /// The stretches of a path, in the order of X. `whole` asks for one, where a form cannot be cut.
@@ -56,6 +65,9 @@ pub fn stretches(path: &Logarithmic, feed: Option<f64>, whole: bool, machine: &M
         let path = Logarithmic { curve, ..path.clone() };
         Stretch { path, feed: Some(feed * mean), error: error[0].max(error[1]) }
     };
+    if machine.rotary_feed == RotaryFeed::InverseTime && path.curve.k() != 0.0 {
+        return vec![Stretch { path: path.clone(), feed: Some(feed), error: 0.0 }];
+    }
     if whole || pair.0 == pair.1 {
         return vec![part(curve.start(), curve.end())];
     }

@@ -10,7 +10,7 @@ use crate::geom::oddeven::{OddEven, polyline_deviation};
 use crate::ir::{Logarithmic, Method, Written, WrittenPoints};
 use crate::machine::RotaryFeed;
 use crate::pass::settle::{steps, through_points};
-use crate::pass::stretch::{Stretch, stretch_of, stretches};
+use crate::pass::stretch::{Stretch, rate, stretch_of, stretches};
 use crate::units::{DEGREES, Position};
 
 impl<'p> Cursor<'p> {
@@ -34,7 +34,7 @@ impl<'p> Cursor<'p> {
         };
         if log.method != Method::OddEven {
             match written {
-                Written::Lines(_) => self.chords(log, &stretches, &mut found, tolerance)?,
+                Written::Lines(_) => self.chords((log, feed), &stretches, &mut found, tolerance)?,
                 Written::Polynomial(_) | Written::Nurbs(_) => {
                     let pieces = self.path_pieces(log, curve.end(), &stretches, &mut found)?;
                     for (i, piece) in pieces.iter().enumerate() {
@@ -72,10 +72,10 @@ impl<'p> Cursor<'p> {
                     let mut points: Vec<(f64, f64)> = std::iter::once(start).chain(asked).collect();
                     points.reverse();
                     let steps = points.windows(2).map(|pair| (pair[1], stretch(pair[0].0)));
-                    self.odd_even_lines(curve, points[0], steps, &stretches, &mut found)?;
+                    self.odd_even_lines((log, feed), points[0], steps, &stretches, &mut found)?;
                 } else {
                     let steps = asked.map(|point| (point, stretch(point.0)));
-                    self.odd_even_lines(curve, start, steps, &stretches, &mut found)?;
+                    self.odd_even_lines((log, feed), start, steps, &stretches, &mut found)?;
                 }
             }
             Written::Polynomial(_) | Written::Nurbs(_) => {
@@ -91,6 +91,35 @@ impl<'p> Cursor<'p> {
     /// Checks F of a stretch.
     fn stretch_feed(&self, read: Option<Decimal>, stretch: &Stretch) -> Result<(), Diagnostics> {
         self.same_feed(read, stretch.feed)
+    }
+
+    /// Whether lines of this path have their time as F.
+    fn is_timed(&self, log: &Logarithmic) -> bool {
+        self.machine.rotary_feed == RotaryFeed::InverseTime && log.curve.k() != 0.0
+    }
+
+    /// Checks F of the line that was met last, which is to take the time of the way between two X at a feed. X is known
+    /// to `unit` mm at both ends. How long it takes, minutes.
+    fn line_time(
+        &self,
+        run: &WrittenPoints,
+        (log, feed): (&Logarithmic, Option<f64>),
+        (from, to): (f64, f64),
+        unit: f64,
+    ) -> Result<f64, Diagnostics> {
+        let Some(feed) = feed else { return Ok(0.0) };
+        let asked = rate(log, feed, from, to);
+        let last = 1.0 / crate::decimal::power_of_ten(self.machine.digits.feed) as f64;
+        // Half a unit of F with the noise of a float, and what the ends' rounding makes of the way.
+        let allowed = 0.500_000_1 * last + asked * 2.0 * unit / (to - from).abs();
+        let read = self.within.checked_sub(1).and_then(|at| run.rates.get(at)).map(|rate| rate.to_f64());
+        match read.filter(|read| (read - asked).abs() <= allowed) {
+            Some(read) => Ok(1.0 / read),
+            None => {
+                let message = format!("F of this line is not the {asked:.3} that its time asks for");
+                Err(self.differs("feed-differs", message))
+            }
+        }
     }
 
     /// The pieces of a path from where the cursor stands to where X = `end` is reached, in the order of X, each with the
@@ -140,7 +169,7 @@ impl<'p> Cursor<'p> {
         let rate = |t: f64| {
             let [dx, dy, dz, da] = std::array::from_fn(|axis: usize| derivatives[axis].eval(t));
             let turn = match self.machine.rotary_feed {
-                RotaryFeed::Free => 0.0,
+                RotaryFeed::Free | RotaryFeed::InverseTime => 0.0,
                 RotaryFeed::DegreesAsMm => da,
                 RotaryFeed::Surface => da / DEGREES * curve.radius(x.eval(t)),
             };
@@ -160,7 +189,7 @@ impl<'p> Cursor<'p> {
         let Some(feed) = feed.map(Decimal::to_f64) else { return 0.0 };
         let [dx, dy, dz, da]: [f64; 4] = std::array::from_fn(|axis| to[axis] - from[axis]);
         let turn = match self.machine.rotary_feed {
-            RotaryFeed::Free => 0.0,
+            RotaryFeed::Free | RotaryFeed::InverseTime => 0.0,
             RotaryFeed::DegreesAsMm => da,
             RotaryFeed::Surface => da / DEGREES * curve.radius(0.5 * (from[0] + to[0])),
         };
@@ -185,25 +214,31 @@ impl<'p> Cursor<'p> {
     /// R·ΔA with R linear too; so the distance is bounded by the greater of each at the two ends, taken together.
     fn odd_even_lines(
         &mut self,
-        curve: &LogCurve,
+        (log, asked_feed): (&Logarithmic, Option<f64>),
         start: (f64, f64),
         steps: impl Iterator<Item = ((f64, f64), usize)>,
         stretches: &[Stretch],
         found: &mut Found,
     ) -> Result<(), Diagnostics> {
+        let (curve, timed) = (&log.curve, self.is_timed(log));
         let Some(mut run) = self.lines_run()? else {
             return Err(self.differs("step-differs", "here straight moves were asked".to_owned()));
         };
         let mut from = self.decimals.position(&self.before(run));
         let mut last = End::of(curve, &from, start.0, start.1);
         let (mut at, mut feed) = (usize::MAX, None);
+        let mut x_before = start.0;
         found.deviation = found.deviation.max(last.segment(&last));
         for ((x, a), stretch) in steps {
             if stretch != at {
                 if at != usize::MAX {
                     self.leave(run);
                 }
-                (run, feed) = self.lines_of(&stretches[stretch])?;
+                if timed {
+                    run = self.lines_run()?.unwrap_or(run);
+                } else {
+                    (run, feed) = self.lines_of(&stretches[stretch])?;
+                }
                 at = stretch;
             }
             let Some(units) = self.next_point(run) else {
@@ -232,7 +267,12 @@ impl<'p> Cursor<'p> {
             let end = End::of(curve, &to, x, a);
             found.deviation = found.deviation.max(last.segment(&end));
             found.path_blocks += 1;
-            found.minutes += self.line_minutes(curve, &from, &to, feed);
+            found.minutes += if timed {
+                self.line_time(run, (log, asked_feed), (x_before, x), 0.0)?
+            } else {
+                self.line_minutes(curve, &from, &to, feed)
+            };
+            x_before = x;
             (last, from) = (end, to);
         }
         self.leave(run);
@@ -298,12 +338,12 @@ impl<'p> Cursor<'p> {
     /// The curve written as lines: chords at equal X, to the end.
     fn chords(
         &mut self,
-        log: &Logarithmic,
+        (log, asked_feed): (&Logarithmic, Option<f64>),
         stretches: &[Stretch],
         found: &mut Found,
         tolerance: f64,
     ) -> Result<(), Diagnostics> {
-        let curve = &log.curve;
+        let (curve, timed) = (&log.curve, self.is_timed(log));
         let Some(mut run) = self.lines_run()? else { return Ok(()) };
         let mut from = self.decimals.position(&self.before(run));
         let first = from[0];
@@ -351,10 +391,14 @@ impl<'p> Cursor<'p> {
                 self.within -= 1;
                 return Err(self.differs(id, message));
             }
-            self.stretch_feed(feed, &stretches[stretch_of(stretches, high[0] - half)])?;
             found.deviation = found.deviation.max(bound);
             found.path_blocks += 1;
-            found.minutes += self.line_minutes(curve, &from, &to, feed);
+            found.minutes += if timed {
+                self.line_time(run, (log, asked_feed), (low[0], high[0]), half)?
+            } else {
+                self.stretch_feed(feed, &stretches[stretch_of(stretches, high[0] - half)])?;
+                self.line_minutes(curve, &from, &to, feed)
+            };
             from = to;
         }
         let (start, end) = if log.back { (from[0], first) } else { (first, from[0]) };

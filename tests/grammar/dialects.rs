@@ -39,8 +39,9 @@ const ALONE: &[&str] = &["code-refused", "axis-unknown", "short-way-axis"];
 
 /// The default machine of a dialect without header and footer, so that a line can stand alone.
 fn bare(name: &str) -> Machine {
+    let feed = if name == "mazak" { "[feed]\nrotary = \"inverse-time\"\n" } else { "" };
     machine(&format!(
-        "extends = \"{name}\"\n[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nfooter = []\nclose = []\n"
+        "extends = \"{name}\"\n{feed}[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nfooter = []\nclose = []\n"
     ))
 }
 

@@ -201,6 +201,8 @@ enum Counts {
     Linear,
     DegreesAsMm,
     Surface,
+    /// Lines have their time as F, in 1/min.
+    Time,
 }
 
 /// Floating-point noise. Numbers stay below 1e4, so that an operation costs at most 1e4 · 2⁻⁵³ ≈ 1e-12, and none here
@@ -269,6 +271,7 @@ fn golden(name: &str) -> Golden {
             RotaryFeed::Free => Counts::Linear,
             RotaryFeed::DegreesAsMm => Counts::DegreesAsMm,
             RotaryFeed::Surface => Counts::Surface,
+            RotaryFeed::InverseTime => Counts::Time,
         },
         upath: machine.spline.shared_parameter,
     };

@@ -191,6 +191,9 @@ fn speed(job: &Job, track: &Track, violations: &mut Vec<Violation>) {
         violations
             .push(step.violation(Rule::Feed, format!("F does not count {axis} as the machine file says")));
     }
+    if let Some(axis) = turns.filter(|_| job.counts == Counts::Time && !step.modal.timed) {
+        violations.push(step.violation(Rule::Feed, format!("{axis} moves without a time")));
+    }
     let Some(feed) = step.modal.feed else { return };
     let mut most: BTreeMap<char, f64> = BTreeMap::new();
     for pair in track.points.windows(2) {
@@ -199,6 +202,11 @@ fn speed(job: &Job, track: &Track, violations: &mut Vec<Violation>) {
         let way = way.map(|delta| delta * delta).sum::<f64>().sqrt();
         for axis in pair[1].keys() {
             let delta = delta(*axis).unwrap_or_default();
+            if step.modal.timed {
+                // Parts of one block add up.
+                *most.entry(*axis).or_default() += feed * delta;
+                continue;
+            }
             // Where nothing moves that F counts, it is the speed of what does.
             let share = if NOISE < way { delta / way } else { f64::from(NOISE < delta) };
             let most = most.entry(*axis).or_default();

@@ -57,9 +57,10 @@ fn place_is_free(step: &Move) -> bool {
 /// The first thing in which a move differs.
 fn difference(expected: &Move, alone: &Move) -> Option<String> {
     let (was, is) = (&expected.modal, &alone.modal);
-    let modal: [(&str, bool); 12] = [
+    let modal: [(&str, bool); 13] = [
         ("motion", was.motion == is.motion),
         ("feed", was.feed == is.feed),
+        ("kind of feed", was.timed == is.timed),
         ("tool", (was.tool, was.changed) == (is.tool, is.changed)),
         ("tool length", was.length == is.length),
         ("spindle", (was.speed, was.turns) == (is.speed, is.turns)),

@@ -2,7 +2,7 @@
 
 use super::state::{Length, Modal, Move, Run, Start, Zero};
 use super::words::{Block, Dialect, Motion, State, Target, Value, Word};
-use super::{Job, NOISE, Rule, Violation};
+use super::{Counts, Job, NOISE, Rule, Violation};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where between approach and retraction the tool is.
@@ -157,10 +157,13 @@ impl Control<'_> {
             self.word(word);
         }
         self.shift(block);
+        self.modal.motion = block.motion.or(self.modal.motion);
         if let Some(feed) = block.feed {
             self.modal.feed = self.resolve(feed);
+        } else if self.modal.timed && self.feeds() {
+            // Under inverse time F stands in every block.
+            self.modal.feed = None;
         }
-        self.modal.motion = block.motion.or(self.modal.motion);
         if block.machine {
             return self.go_home(block);
         }
@@ -275,6 +278,17 @@ impl Control<'_> {
                 self.require(self.phase == Phase::Away, Rule::End, "the spindle stops at the workpiece");
                 self.modal.turns = false;
                 self.stopped = true;
+            }
+            Word::Timed(timed) => {
+                if *timed && self.job.counts != Counts::Time {
+                    self.modal.states.remove(&State::FeedPerMinute);
+                    self.violation(Rule::Header, "FeedPerMinute is left");
+                }
+                // What holds under the one means nothing under the other.
+                if self.modal.timed != *timed {
+                    self.modal.feed = None;
+                }
+                self.modal.timed = *timed;
             }
             Word::Coolant(on) => {
                 self.require(self.job.coolant || !on, Rule::Coolant, "nobody asked for coolant");

@@ -29,9 +29,12 @@ pub(super) struct Zero {
 
 /// What stays in force until it is replaced.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is something that a control holds by itself")]
 pub(super) struct Modal {
     pub(super) motion: Option<Motion>,
     pub(super) feed: Option<f64>,
+    /// Whether F is inverse time.
+    pub(super) timed: bool,
     pub(super) tool: Option<f64>,
     /// Whether the tool was changed since it was called.
     pub(super) changed: bool,
@@ -61,6 +64,7 @@ impl Modal {
             modal.length = Length::Unknown;
         }
         modal.feed = modal.feed.filter(|_| self.motion != Some(Motion::Rapid));
+        modal.timed &= self.motion != Some(Motion::Rapid);
         modal.upath = modal.upath.filter(|_| curve);
         modal.spline_path = modal.spline_path.filter(|_| run);
         modal.ends = modal.ends.map(|word| word.filter(|_| through));

@@ -77,6 +77,7 @@ pub const DIALECT: Dialect = Dialect {
     ],
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
+    inverse_time: false,
     round: Round::Step,
     write: write::write,
     read: read::read,

@@ -84,6 +84,7 @@ pub const MAZAK: Dialect = Dialect {
     ],
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
     parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
+    inverse_time: true,
     round: Round::Place,
     write: write::write,
     read: read::read,

@@ -15,7 +15,7 @@ use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
 use crate::dialect::{Form, Reading};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
-use crate::machine::Machine;
+use crate::machine::{Machine, RotaryFeed};
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
 use nurbs::NurbsRun;
@@ -359,6 +359,11 @@ impl Reader<'_> {
                 self.work_offset = Some(tenths);
                 return;
             }
+            Some(tenths @ (930 | 940)) if self.assembler.machine.rotary_feed == RotaryFeed::InverseTime => {
+                self.flush();
+                self.assembler.inverse = tenths == 930;
+                return;
+            }
             Some(tenths) if STATE_CODES.contains(&tenths) => return,
             _ => {
                 let refused = REFUSED_CODES.iter().find(|(code, _)| Some(*code) == tenths);
@@ -394,8 +399,21 @@ impl Reader<'_> {
         if block.offset.is_some() || block.h.is_some() || self.offset_due.is_some() {
             self.length_offset(&mut block, whole());
         }
+        let mut rate = None;
         if let Some((feed, range)) = block.feed.take() {
-            self.set_feed(feed, range);
+            if self.assembler.inverse {
+                rate = Some(feed);
+            } else {
+                self.set_feed(feed, range);
+            }
+        }
+        if self.assembler.inverse && block.count != 0 && self.motion != Motion::Rapid {
+            if self.motion != Motion::Line {
+                return self.error("inverse-time", "under G93 only straight moves are read", whole());
+            }
+            if rate.is_none_or(|rate| rate.compare(Decimal::ZERO).is_le()) {
+                return self.error("feed-missing", "under G93 every block has an F above zero", whole());
+            }
         }
         if let Some((_, range)) = block.q.take() {
             self.error("word-unknown", "Q is read with G05.1 only", range);
@@ -418,6 +436,7 @@ impl Reader<'_> {
             Motion::Rapid => self.assembler.rapid(block.named(), span),
             Motion::Line => {
                 self.short_way(&mut block);
+                self.assembler.rate = rate;
                 self.assembler.line(block.named(), line, span);
             }
             Motion::Through => self.through_block(&block, line, span),
@@ -526,7 +545,7 @@ impl Reader<'_> {
                 if let Some(last) = units.chunks_exact(stride).next_back() {
                     end[..stride].copy_from_slice(last);
                 }
-                let points = WrittenPoints { start, stride, units, lines };
+                let points = WrittenPoints { start, stride, units, lines, rates: Vec::new() };
                 self.assembler.curve(Written::Through(ThroughKind::Fine, points), &end, span);
             }
             Some(Run::Nurbs(run)) => {

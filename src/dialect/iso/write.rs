@@ -126,11 +126,16 @@ impl Writer<'_> {
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         self.modal.lines(points);
-        for point in points.points() {
+        for (i, point) in points.points().enumerate() {
+            let rate = points.rates.get(i);
             self.modal.begin("N");
             self.modal.motion("G1");
+            self.modal.inverse(rate.is_some());
             self.modal.moved_axes(&point, points.stride);
-            self.modal.feed(feed);
+            match rate {
+                Some(rate) => self.modal.rate(*rate),
+                None => self.modal.feed(feed),
+            }
             self.modal.reached(&point);
             self.modal.end();
         }
@@ -151,6 +156,7 @@ impl Writer<'_> {
             self.modal.begin("N");
             if i == 0 {
                 self.modal.motion("G06.2");
+                self.modal.inverse(false);
                 self.modal.out.push(b'P');
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree + 1));
                 self.modal.gap();
@@ -183,6 +189,7 @@ impl Writer<'_> {
         for point in points.points() {
             self.modal.begin("N");
             self.modal.motion("G06.1");
+            self.modal.inverse(false);
             self.modal.axes(&named, &point);
             self.modal.feed(feed);
             self.modal.reached(&point);

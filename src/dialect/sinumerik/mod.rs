@@ -92,6 +92,7 @@ pub const DIALECT: Dialect = Dialect {
         is_name,
     ),
     parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
+    inverse_time: false,
     round: Round::Shortest,
     write: write::write,
     read: read::read,

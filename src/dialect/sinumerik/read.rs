@@ -407,7 +407,7 @@ impl Reader<'_> {
                 let units = run.points.iter().flat_map(|point| point[..stride].to_vec()).collect();
                 Some(Written::Through(
                     kind,
-                    WrittenPoints { start: run.start, stride, units, lines: run.lines },
+                    WrittenPoints { start: run.start, stride, units, lines: run.lines, rates: Vec::new() },
                 ))
             }
             Motion::None | Motion::Rapid | Motion::Line => None,

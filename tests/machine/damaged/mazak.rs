@@ -20,6 +20,9 @@ const CORRECTED: &str = "subprogram/mazak.eia";
 const RETURN: &str = "left-hand/mazak.eia";
 const G1_ALONG_Y: &str = "reverse-taper/mazak.eia";
 
+/// Lines in inverse time.
+const TIMED: &str = "conical-mill/mazak-inverse.eia";
+
 #[rustfmt::skip]
 pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Put("G69", 1, "G68")], &[Word]),
@@ -35,7 +38,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Put("G40", 1, "G42")], &[Header]),
     (NURBS, &[Put("G90", 1, "")], &[Header]),
     (NURBS, &[Put("G94", 1, "")], &[Header]),
-    (NURBS, &[Put("G94", 1, "G93")], &[Header]),
+    (NURBS, &[Put("G94", 1, "G93")], &[Header, Feed]),
     (NURBS, &[Put("G90", 1, "G91")], &[Header, Incremental]),
     (NURBS, &[After("G54", 1, "G91")], &[Incremental]),
     (NURBS, &[Drop("Y0.", 2)], &[Clear]),
@@ -160,4 +163,10 @@ pub(super) const FAULTS: &[Fault] = &[
     (G1, &[Limit('X', [0.0, 30.0, 199.0])], &[Speed]),
     (RETURN, &[Limit('X', [-1.5, 27.0, 1000.0])], &[]),
     (RETURN, &[Limit('X', [-1.5, 27.0, 999.0])], &[Speed]),
+    (TIMED, &[Put("G93 X0.1987", 1, "X0.1987")], &[Feed]),
+    (TIMED, &[Put("F1002.649", 1, "")], &[Feed]),
+    (TIMED, &[Put("G94 Z0. F200.", 2, "Z0. F200.")], &[Restart]),
+    (TIMED, &[Limit('A', [-1.0, 430.0, 1319.0])], &[]),
+    (TIMED, &[Limit('A', [-1.0, 430.0, 1317.0])], &[Speed]),
+    (NURBS, &[Before("G06.2", 1, "G93")], &[Header, Feed, Restart]),
 ];

@@ -133,8 +133,12 @@ fn code(block: &mut Block, word: &str, code: i32) {
         490 => Word::NoLength,
         900 => Word::State(State::Absolute),
         910 => Word::Incremental,
-        930 | 950 => Word::Other(State::FeedPerMinute),
-        940 => Word::State(State::FeedPerMinute),
+        930 => Word::Timed(true),
+        940 => {
+            block.words.push(Word::Timed(false));
+            Word::State(State::FeedPerMinute)
+        }
+        950 => Word::Other(State::FeedPerMinute),
         _ => return block.fault(word),
     };
     block.words.push(other);

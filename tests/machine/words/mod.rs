@@ -76,6 +76,8 @@ pub(super) enum Word {
     Stop,
     /// M8, or M9.
     Coolant(bool),
+    /// Whether F is inverse time.
+    Timed(bool),
     /// UPATH, or SPATH.
     Upath(bool),
     SplinePath(Vec<char>),
