@@ -11,6 +11,7 @@
 //! A [`Step::Comment`] starts a section: writers forget all modal state there, so that a program can be restarted.
 
 use crate::decimal::{Decimal, units_to_f64};
+use crate::diagnostic::Diagnostics;
 use crate::geom::bezier::Bezier;
 use crate::geom::logcurve::LogCurve;
 use crate::geom::nurbs::Nurbs;
@@ -81,9 +82,24 @@ pub struct Intent {
     pub tolerance: Option<(f64, Span)>,
     /// Where the program's name stands in the input.
     pub name_span: Option<Span>,
+    /// The radius at which rotary axes count, mm, where the input states one.
+    pub radius: Option<f64>,
+    /// What to know about it.
+    pub warnings: Diagnostics,
 }
 
 impl Intent {
+    /// Whether a program can be made of it: every cut has its feed, and a tool is called.
+    pub fn is_complete(&self) -> bool {
+        let fed = |step: &Step<f64, Curve>| match step {
+            Step::Cut(cut) => cut.feed.is_some(),
+            Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => true,
+        };
+        let steps = &self.program.steps;
+        steps.iter().all(|located| fed(&located.step))
+            && steps.iter().any(|located| matches!(located.step, Step::Tool(_)))
+    }
+
     /// Its logarithmic paths with their feeds, and where each was asked for.
     pub fn logarithmic(&self) -> impl Iterator<Item = (&Logarithmic, Option<f64>, Span)> {
         self.program.steps.iter().filter_map(|located| match &located.step {

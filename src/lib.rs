@@ -121,7 +121,7 @@ pub fn compile(
     }
     length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
-    let mut warnings = Diagnostics::new();
+    let mut warnings = intent.warnings.clone();
     let asked = options.motion.or(machine.motion);
     let motion = match asked {
         Some(motion) => motion,
@@ -245,7 +245,8 @@ pub fn verify_program(
     };
     let legal = pass::check::check(reading.value.decimals, &machine)?;
     verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
-    let mut warnings = reading.warnings;
+    let mut warnings = intent.warnings.clone();
+    warnings.extend(reading.warnings);
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
     Ok(Verified { report, intent, tolerance, warnings })
 }
@@ -311,7 +312,9 @@ fn overrun_without_steps(intent: &Intent) -> Diagnostics {
 
 /// The greatest radius at which a rotary axis counts, mm.
 fn radius(intent: &Intent) -> f64 {
-    intent.logarithmic().map(|(log, ..)| log.curve.max_radius()).fold(0.0, f64::max)
+    let own = intent.logarithmic().map(|(log, ..)| log.curve.max_radius()).fold(0.0, f64::max);
+    // Where nobody says, a degree of a curve counts as a millimetre.
+    intent.radius.unwrap_or(if own == 0.0 { units::DEGREES } else { own })
 }
 
 /// What half a unit of the last decimal in every axis makes at the surface, mm.

@@ -60,7 +60,10 @@ fn every_key_stands_in_a_document() {
     pages.push_str(&source(&folder("README.md")));
     pages.extend(files(&folder("grammar"), "ebnf").iter().map(|path| source(path)));
     let mut keys: Vec<&splinepost::tables::Key> =
-        [splinepost::front::cutter::KEYS, splinepost::machine::KEYS].into_iter().flatten().collect();
+        [splinepost::front::cutter::KEYS, splinepost::front::job::KEYS, splinepost::machine::KEYS]
+            .into_iter()
+            .flatten()
+            .collect();
     while let Some(key) = keys.pop() {
         let named = [
             format!("`{}", key.name),

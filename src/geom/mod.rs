@@ -11,6 +11,7 @@
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
+//! | [`knots`] | clamping, degree elevation, by the blossom |
 //! | [`fit`] | few pieces within a tolerance |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
 
@@ -19,6 +20,7 @@ pub mod bezier;
 pub mod deviation;
 pub mod elementary;
 pub mod fit;
+pub mod knots;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;
