@@ -1,9 +1,10 @@
 //! What a compilation tells beside the program.
 
-use crate::ir::{Intent, Step};
+use crate::geom::follow::Map;
+use crate::ir::{Cut, Intent, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::DEGREES;
-use crate::verify::Report;
+use crate::verify::{Report, length};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -30,9 +31,11 @@ pub struct Summary {
     pub tolerance: f64,
     /// `proved`, `points-only` or `not verified`.
     pub status: &'static str,
-    /// The greatest deviation at the cutter's surface, mm.
+    /// The map that the deviation of curves holds for.
+    pub map: Option<&'static str>,
+    /// The greatest deviation, at the surface of a cutter, mm.
     pub deviation_mm: Option<f64>,
-    /// The greatest deviation in A, radians.
+    /// The greatest deviation in a rotary axis, radians.
     pub deviation_rad: Option<f64>,
     /// Where lines follow odd-even steps: the steps' distance from the ideal curve, mm.
     pub steps_from_ideal_mm: Option<f64>,
@@ -88,10 +91,12 @@ impl Summary {
                 "F counts degrees of A as mm on this machine: X Y Z move at {slow:.1} to {fast:.1} mm/min, not at F"
             ));
         }
-        notes.push(
-            "the path is that of the contact point; the wheel's radius and profile are not modelled"
-                .to_owned(),
-        );
+        if intent.logarithmic().next().is_some() {
+            notes.push(
+                "the path is that of the contact point; the wheel's radius and profile are not modelled"
+                    .to_owned(),
+            );
+        }
         if report.is_some() {
             notes.push(
             "the proof covers the programmed path, not what the control's own smoothing or compressor adds"
@@ -110,6 +115,7 @@ impl Summary {
             speed,
             tolerance,
             status: report.map_or("not verified", |r| r.status.word()),
+            map: report.and_then(|r| r.map).map(Map::words),
             deviation_mm: report.map(|r| r.deviation.mm),
             deviation_rad: report.map(|r| r.deviation.rad),
             steps_from_ideal_mm: report.and_then(|r| r.from_ideal).map(|b| b.mm),
@@ -137,9 +143,17 @@ impl Summary {
         let _ = writeln!(text, "  time       {:.2} min cutting", self.cutting_minutes);
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
+                let where_to = if self.cutter.is_some() {
+                    format!(" at the surface, {rad:.2e} rad in A")
+                } else if 0.0 < rad {
+                    format!(", {rad:.2e} rad in rotary axes")
+                } else {
+                    String::new()
+                };
+                let map = self.map.map_or(String::new(), |map| format!(" {map}"));
                 let _ = writeln!(
                     text,
-                    "  deviation  {mm:.2e} mm at the surface, {rad:.2e} rad in A, {} (tolerance {} mm)",
+                    "  deviation  {mm:.2e} mm{where_to}, {}{map} (tolerance {} mm)",
                     self.status, self.tolerance
                 );
             }
@@ -239,6 +253,11 @@ fn times(intent: &Intent, machine: &Machine) -> (f64, Option<[f64; 2]>) {
         minutes += length / feed;
         let (slow, fast) = (at[0].min(at[1]), at[0].max(at[1]));
         speed = Some(speed.map_or([slow, fast], |known| [known[0].min(slow), known[1].max(fast)]));
+    }
+    for located in &intent.program.steps {
+        let Step::Cut(Cut { feed: Some(feed), role: Role::Path, curve }) = &located.step else { continue };
+        let pieces = curve.pieces();
+        minutes += pieces.iter().map(|piece| length(piece, &intent.program.axes)).sum::<f64>() / feed;
     }
     (minutes, speed)
 }

@@ -9,12 +9,15 @@
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
 //! | either | the control's own spline through points | the points only | points-only |
+//! | lines | lines | point by point | proved |
+//! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
 //!
 //! Where a path starts late or ends early by some rounding, the rest of the curve is missed by no more than that times
 //! the curve's own speed, which is added to the bound.
 //!
 //! What the control adds (G642, COMPCAD, cycle 32, G61.1) is not covered.
 
+mod curve;
 mod logarithmic;
 
 use crate::decimal::{Decimal, round_units};
@@ -22,13 +25,14 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Reading;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
+use crate::geom::follow::Map;
 use crate::geom::nurbs::{Nurbs, NurbsError};
 use crate::ir::{
     Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Step, Units, Written, WrittenPoints,
 };
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
-use crate::units::Position;
+use crate::units::{Axes, Kind, Position};
 
 /// How sure the deviation is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,6 +62,8 @@ pub struct Report {
     pub status: Status,
     /// Where the intent is odd-even steps: their distance from the ideal curve.
     pub from_ideal: Option<Bound>,
+    /// The map that the deviation of curves holds for, where it needed one of its own.
+    pub map: Option<Map>,
     /// Blocks that cut.
     pub path_blocks: usize,
     /// The paths' length, mm.
@@ -84,6 +90,7 @@ pub fn verify(
         deviation: Bound::ZERO,
         status: Status::Proved,
         from_ideal: None,
+        map: None,
         path_blocks: 0,
         cutting_length: 0.0,
     };
@@ -110,7 +117,9 @@ pub fn verify(
         );
         return Err(diagnostic.at(Span::new(id, range.clone()), "first here").into());
     }
-    let mut cursor = Cursor { decimals, text, id, at: 0, within: 0, rate_digits: machine.digits.feed };
+    let rate_digits = machine.digits.feed;
+    let radius = intent.radius();
+    let mut cursor = Cursor { decimals, text, id, at: 0, within: 0, rate_digits, machine, radius, map: None };
     let mut ideal = Ideal(None);
     for located in &intent.program.steps {
         match &located.step {
@@ -161,6 +170,7 @@ pub fn verify(
                     report.from_ideal =
                         Some(report.from_ideal.map_or(from_ideal, |known| known.max(from_ideal)));
                 }
+                report.map = cursor.map;
                 if *role == Role::Path {
                     report.path_blocks += found.path_blocks;
                     report.cutting_length += found.cutting_length;
@@ -185,6 +195,11 @@ struct Cursor<'p> {
     within: usize,
     /// How many decimals feeds have.
     rate_digits: u8,
+    machine: &'p Machine,
+    /// The radius at which rotary axes count, mm.
+    radius: f64,
+    /// The map that the bounds hold for so far.
+    map: Option<Map>,
 }
 
 /// What one cut was found to be.
@@ -232,6 +247,12 @@ impl<'p> Cursor<'p> {
                 Some(number) => self.line(*number),
                 None => located.span,
             },
+            Step::Cut(Cut { curve: Written::Polynomial(polynomial), .. }) => {
+                match polynomial.blocks.get(self.within).filter(|block| block.line != 0) {
+                    Some(block) => self.line(block.line),
+                    None => located.span,
+                }
+            }
             Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => {
                 located.span
             }
@@ -296,11 +317,12 @@ impl<'p> Cursor<'p> {
                 self.differs("feed-differs", format!("the feed differs from the {asked} that was asked"))
             );
         }
-        match curve {
-            Curve::Lines(line) => self.lines(line, &cut.curve),
-            Curve::Logarithmic(log) => self.logarithmic(log, &cut.curve, tolerance, ideal),
-            Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
-                Err(self.differs("not-comparable", "this form of input cannot be compared yet".to_owned()))
+        match (curve, &cut.curve) {
+            (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written),
+            (Curve::Logarithmic(log), written) => self.logarithmic(log, written, tolerance, ideal),
+            (Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..), written) => {
+                let (machine, radius) = (self.machine, self.radius);
+                self.curve(&curve::Asked { curve, machine, radius, tolerance }, written)
             }
         }
     }
@@ -327,6 +349,17 @@ impl<'p> Cursor<'p> {
             let read = self.decimals.position(&units);
             worst = (0..asked.stride).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
         }
+        let axes = self.decimals.program.axes;
+        let linear = |i: &usize| axes.kind(*i) == Kind::Linear;
+        let (mut from, mut length) = (asked.start, 0.0);
+        for to in asked.points() {
+            length += (0..asked.stride)
+                .filter(linear)
+                .map(|i| (to[i] - from[i]) * (to[i] - from[i]))
+                .sum::<f64>()
+                .sqrt();
+            from = to;
+        }
         let count = asked.count();
         self.leave(points);
         Ok(Found {
@@ -334,7 +367,7 @@ impl<'p> Cursor<'p> {
             status: Status::Proved,
             from_ideal: None,
             path_blocks: count,
-            cutting_length: 0.0,
+            cutting_length: length,
         })
     }
 
@@ -388,6 +421,22 @@ impl<'p> Cursor<'p> {
             Written::Lines(_) | Written::Through(..) => Ok(Vec::new()),
         }
     }
+}
+
+/// The length of a piece in the linear axes, mm, by Simpson's rule on eight parts.
+pub fn length(piece: &Bezier, axes: &Axes) -> f64 {
+    let speed = |t: f64| {
+        let [_, d, _] = piece.derivatives(t);
+        let linear = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear);
+        linear.map(|i| d[i] * d[i]).sum::<f64>().sqrt()
+    };
+    let parts = if piece.degree == 1 { 1 } else { 8 };
+    let h = 1.0 / f64::from(parts);
+    let part = |k: u32| {
+        let t = f64::from(k) * h;
+        speed(t) + 4.0 * speed(t + 0.5 * h) + speed(t + h)
+    };
+    (0..parts).map(part).sum::<f64>() * h / 6.0
 }
 
 /// Compares a program with what would be written for the same meaning, line by line and word by word: a doubled or
@@ -444,7 +493,7 @@ pub fn to_nurbs(decimals: &Decimals, nurbs: &crate::ir::WrittenNurbs) -> Result<
 mod tests {
     use super::*;
     use crate::ir::{Program, WrittenNurbs};
-    use crate::units::{Axes, MAX_AXES};
+    use crate::units::MAX_AXES;
 
     #[test]
     fn small_spans_behind_a_large_one_stay_exact() {

@@ -103,8 +103,8 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
         }
         Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => true,
     });
-    let program = interpolate::interpolate(&rest, form, machine, tolerance, tolerance)?;
-    Ok(counted + count(&convert::convert(program, form, machine)?))
+    let program = interpolate::interpolate(&rest, form, machine, tolerance, tolerance, true)?;
+    Ok(counted + count(&convert::convert(program, form, machine, false)?))
 }
 
 /// How many blocks the paths of a converted program take.

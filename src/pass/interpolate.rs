@@ -1,16 +1,19 @@
-//! Logarithmic curves become steps, points or pieces, each straight from the intent.
+//! Logarithmic curves become steps, points or pieces, each straight from the intent; other curves what
+//! [`approximate`](super::approximate) makes of them.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Step};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Role, Step};
 use crate::machine::Machine;
+use crate::pass::approximate::{Frame, approximate};
 use crate::pass::settle::{steps, through_points};
 use crate::source::Span;
 
 /// The program with every logarithmic curve followed within `tolerance` mm, in shapes that `form` can be made of.
-/// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow.
+/// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow. Other curves are
+/// left as they are where the form takes them exactly and `exact` says that it may.
 ///
 /// # Errors
 /// The tolerance is out of reach.
@@ -20,6 +23,7 @@ pub fn interpolate(
     machine: &Machine,
     tolerance: f64,
     asked: f64,
+    exact: bool,
 ) -> Result<Program<f64, Curve>, Diagnostics> {
     let mut steps = Vec::with_capacity(intent.program.steps.len());
     // Flutes and passes are one curve, indexed and shifted: it is fitted once.
@@ -46,6 +50,13 @@ pub fn interpolate(
                 };
                 Step::Cut(Cut { feed: *feed, role: *role, curve })
             }
+            Step::Cut(Cut { feed, role: Role::Path, curve }) => {
+                let tolerance = if matches!(form, Form::Through(_)) { asked } else { tolerance };
+                let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
+                let curve = approximate(curve, form, &frame, tolerance, exact)
+                    .map_err(|diagnostic| diagnostic.at(located.span, ""))?;
+                Step::Cut(Cut { feed: *feed, role: Role::Path, curve })
+            }
             step @ (Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) | Step::Cut(_)) => {
                 step.clone()
             }
@@ -55,6 +66,7 @@ pub fn interpolate(
     Ok(Program { name: intent.program.name.clone(), axes: intent.program.axes, steps })
 }
 
+/// What is said where a tolerance cannot be reached.
 fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
     Diagnostic::refusal("tolerance-out-of-reach", error.to_string())
         .at(span, "")

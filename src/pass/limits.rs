@@ -95,7 +95,7 @@ pub(super) fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl F
     }
 }
 
-/// An upper bound of an axis' speed on a polynomial piece, and the start of the part where it is reached. A block that
+/// An upper bound of an axis' speed on a piece, and the start of the part where it is reached. A block that
 /// moves no linear axis runs at F in the rotary one.
 fn axis_speed(
     decimals: &Decimals,
@@ -105,7 +105,15 @@ fn axis_speed(
     feed: f64,
 ) -> (f64, Position) {
     let axes = decimals.program.axes;
-    let derivative = |i: usize| piece.numerator(i).derivative();
+    // Of a rational piece N/D: N′D − ND′, since all axes share the D² below it and only their ratio counts.
+    let below = (!piece.is_polynomial()).then(|| piece.denominator());
+    let derivative = |i: usize| {
+        let n = piece.numerator(i);
+        match &below {
+            None => n.derivative(),
+            Some(d) => n.derivative().times(d).combined(1.0, &n.times(&d.derivative()), -1.0),
+        }
+    };
     let counts = |i: &usize| axes.kind(*i) == Kind::Linear || machine.rotary_feed == RotaryFeed::DegreesAsMm;
     let linear: Vec<Bernstein> = (0..axes.count()).filter(counts).map(derivative).collect();
     let own = derivative(axis);

@@ -6,11 +6,13 @@
 //! | [`choose`] | one motion for the program, where `auto` leaves it open |
 //! | [`settle`] | method and Δl, where the input leaves them open: after this the intent is exact |
 //! | [`interpolate`] | logarithmic curves become steps, points or pieces |
+//! | [`approximate`] | other curves that the form cannot take exactly are fitted, within `interpolate` |
 //! | [`convert`] | every curve takes the form of the motion, exactly |
 //! | [`quantise`] | every number is rounded, once |
 //! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
 //! | [`limits`] | how fast each axis has to move |
 
+pub mod approximate;
 pub mod check;
 pub mod choose;
 pub mod convert;

@@ -74,6 +74,7 @@ pub const DIALECT: Dialect = Dialect {
         },
         Motion { name: "linear", form: Form::Lines, about: "L" },
     ],
+    nurbs: None,
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
     write: write::write,
     read: read::read,

@@ -57,7 +57,7 @@
 mod read;
 mod write;
 
-use super::{Dialect, Form, Motion};
+use super::{Dialect, Form, Motion, NurbsRules};
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -76,6 +76,7 @@ pub const MAZAK: Dialect = Dialect {
             about: "G06.1: fine spline through points",
         },
     ],
+    nurbs: Some(NurbsRules { degrees: (1, 3), greatest_weight: 99.9999, starts_with_one: false }),
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
     write: write::write,
     read: read::read,

@@ -17,6 +17,12 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     String::from_utf8(writer.modal.out).unwrap_or_default()
 }
 
+/// Coefficients up to the last that is not zero.
+fn used(coefficients: &[Decimal]) -> &[Decimal] {
+    let count = coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
+    &coefficients[..count]
+}
+
 struct Writer<'a> {
     modal: Modal<'a>,
     decimals: &'a Decimals,
@@ -94,6 +100,15 @@ impl Writer<'_> {
         }
     }
 
+    /// a₂ and so on, behind the end.
+    fn coefficients(&mut self, coefficients: &[Decimal]) {
+        for a in coefficients {
+            self.modal.out.push(b',');
+            a.write(&mut self.modal.out, self.modal.spelling);
+        }
+        self.modal.text(") ");
+    }
+
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, curve: &Written, feed: Option<Decimal>) {
         self.path_reference(curve, false);
         let moved = moving(curve);
@@ -101,11 +116,13 @@ impl Writer<'_> {
             self.modal.begin("N");
             self.modal.motion("POLY");
             for &i in &moved {
-                let coefficients = &block.coefficients[i];
-                let count =
-                    coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
-                if count == 0 {
-                    self.modal.axis(i, block.end[i]);
+                let coefficients = used(&block.coefficients[i]);
+                let divided = block.denominator.is_some_and(|denominator| denominator.divides[i]);
+                if coefficients.is_empty() && !divided {
+                    // Beside a denominator an axis that rests is not named.
+                    if block.denominator.is_none() {
+                        self.modal.axis(i, block.end[i]);
+                    }
                     continue;
                 }
                 let name = self.modal.machine.axes.name(i);
@@ -114,11 +131,12 @@ impl Writer<'_> {
                 self.modal.text("]=(");
                 let spelling = self.modal.spelling;
                 write_units(&mut self.modal.out, block.end[i], self.decimals.digits[i], spelling);
-                for a in &coefficients[..count] {
-                    self.modal.out.push(b',');
-                    a.write(&mut self.modal.out, spelling);
-                }
-                self.modal.text(") ");
+                self.coefficients(coefficients);
+            }
+            if let Some(denominator) = &block.denominator {
+                self.modal.text("PO[]=(");
+                denominator.end.write(&mut self.modal.out, self.modal.spelling);
+                self.coefficients(used(&denominator.coefficients));
             }
             self.modal.text("PL=");
             block.pl.write(&mut self.modal.out, Spelling::PLAIN);
