@@ -1,7 +1,7 @@
 //! A curve of many pieces as one function of u: piece i on i ≤ u ≤ i + 1.
 
 use super::bezier::Bezier;
-use super::follow::foot;
+use super::follow::{foot, tamed};
 use crate::units::{MAX_AXES, Position};
 
 /// Joints whose directions differ by less than this are smooth: sin of the angle, some 2e-5 degrees.
@@ -36,7 +36,8 @@ fn leaves(piece: &Bezier) -> Option<Position> {
 impl Chain {
     /// The curve of these pieces, those without length left out; none where nothing is left.
     pub fn new(pieces: &[Bezier]) -> Option<Chain> {
-        let pieces: Vec<Bezier> = pieces.iter().filter(|piece| leaves(piece).is_some()).copied().collect();
+        let mut pieces = tamed(pieces);
+        pieces.retain(|piece| leaves(piece).is_some());
         (!pieces.is_empty()).then_some(Chain { pieces })
     }
 

@@ -94,22 +94,65 @@ pub fn follow(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Result<Follo
     if path.is_empty() || curve.is_empty() || !path.iter().chain(curve).all(finite) {
         return Err(OrderError::NotFinite);
     }
-    let mut bounds = Bounds::new(path, curve, tolerance);
     if path.len() == curve.len() {
-        for (p, c) in path.iter().zip(curve) {
-            let (distance, axes) = difference(&bounds, p, c, &Bernstein::new(&[0.0, 1.0]));
-            bounds.take(distance, &axes);
-            if tolerance < bounds.distance {
-                break;
-            }
-        }
-        if bounds.distance <= tolerance {
+        let mut bounds = Bounds::new(path, curve, tolerance);
+        if path.iter().zip(curve).all(|(p, c)| at_equal_parameters(p, c, &mut bounds)) {
             return Ok(bounds.found(Map::Parameter));
         }
-        bounds = Bounds::new(path, curve, tolerance);
     }
-    along(path, curve, &mut bounds);
+    let mut bounds = Bounds::new(path, curve, tolerance);
+    along(&tamed(path), &tamed(curve), &mut bounds);
     Ok(bounds.found(Map::Nearest))
+}
+
+/// Bounds a piece against a piece with φ the identity; false where that is not within the tolerance.
+fn at_equal_parameters(p: &Bezier, c: &Bezier, bounds: &mut Bounds) -> bool {
+    let same = Bernstein::new(&[0.0, 1.0]);
+    let mut stack = vec![(*p, *c, 0)];
+    while let Some((p, c, depth)) = stack.pop() {
+        bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
+        if !(bounds.seen <= bounds.tolerance) {
+            return false;
+        }
+        let (most, axes) = difference(bounds, &p, &c, &same);
+        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
+            bounds.take(most, &axes);
+            if !(bounds.distance <= bounds.tolerance) {
+                return false;
+            }
+            continue;
+        }
+        bounds.left -= 1;
+        stack.push((p.segment(0.5, 1.0), c.segment(0.5, 1.0), depth + 1));
+        stack.push((p.segment(0.0, 0.5), c.segment(0.0, 0.5), depth + 1));
+    }
+    true
+}
+
+/// The greatest ratio of two weights of a piece that is run along as it is.
+const TAME: f64 = 3.0;
+
+/// The same path, its pieces halved where weights differ much: there most of the way is run in a small part of the
+/// parameter, and nearest places are hard to find.
+pub(super) fn tamed(pieces: &[Bezier]) -> Vec<Bezier> {
+    let wild = |piece: &Bezier| {
+        let weights = &piece.weights[..=piece.degree];
+        let greatest = weights.iter().copied().fold(0.0, f64::max);
+        weights.iter().any(|w| w * TAME < greatest)
+    };
+    let mut tame = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let mut stack = vec![(*piece, 0)];
+        while let Some((piece, depth)) = stack.pop() {
+            if depth == MAX_DEPTH || !wild(&piece) {
+                tame.push(piece);
+                continue;
+            }
+            stack.push((piece.segment(0.5, 1.0), depth + 1));
+            stack.push((piece.segment(0.0, 0.5), depth + 1));
+        }
+    }
+    tame
 }
 
 /// The greatest bounds so far.
@@ -141,6 +184,11 @@ impl Bounds {
         for (most, axis) in self.axes.iter_mut().zip(axes) {
             *most = most.max(*axis);
         }
+    }
+
+    /// Whether a bound is as close to what was seen as is worth while.
+    fn is_tight(&self, most: f64) -> bool {
+        most <= 1.02 * self.seen + 2.0e-3 * self.tolerance + 2.0 * self.noise
     }
 
     fn found(&self, map: Map) -> Followed {
@@ -257,8 +305,7 @@ fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
         bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
         let phi = rising(&p, &c);
         let (most, axes) = difference(bounds, &p, &c, &phi);
-        let tight = most <= 1.02 * bounds.seen + 2.0e-3 * bounds.tolerance + 2.0 * bounds.noise;
-        if tight || depth == MAX_DEPTH || bounds.left == 0 {
+        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
             bounds.take(most, &axes);
             continue;
         }

@@ -30,6 +30,18 @@ const AIM: f64 = 0.97;
 /// A piece shorter than this share of the curve's parameter is not tried.
 const SHORTEST: f64 = 1.0e-9;
 
+/// Tangents across the curve by less than this, squared sines, are straight ahead: 1e-6 of the length.
+const STRAIGHT: f64 = 1.0e-12;
+
+/// Of a piece this many times farther off than the tolerance a better one is sought.
+const REACH: f64 = 6.0;
+
+/// The least change of a tangent length that is tried, of the curve's length.
+const LEAST_STEP: f64 = 5.0e-4;
+
+/// A piece that is shorter than this share of the curve leaves some of it out.
+const SHORT: f64 = 0.9;
+
 fn dot(a: &Position, b: &Position) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -39,7 +51,7 @@ fn dot(a: &Position, b: &Position) -> f64 {
 /// # Errors
 /// The tolerance is out of reach.
 pub fn cubics(chain: &Chain, tolerance: f64) -> Result<Vec<Bezier>, FitError> {
-    let fit = |from: f64, to: f64| cubic(chain, from, to);
+    let fit = |from: f64, to: f64| cubic(chain, from, to, AIM * tolerance);
     let mut pieces = Vec::new();
     let mut from = 0.0;
     for corner in chain.corners() {
@@ -191,7 +203,7 @@ fn root(x: f64, order: f64) -> f64 {
 }
 
 /// The cubic between two places with the curve's tangents, and its greatest measured distance.
-fn cubic(chain: &Chain, from: f64, to: f64) -> (f64, Bezier) {
+fn cubic(chain: &Chain, from: f64, to: f64, tolerance: f64) -> (f64, Bezier) {
     let window = Window::new(chain, from, to);
     let (p0, p3) = (chain.eval(from), chain.eval(to));
     let (t0, t1) = (chain.tangent_behind(from), chain.tangent_before(to));
@@ -201,17 +213,53 @@ fn cubic(chain: &Chain, from: f64, to: f64) -> (f64, Bezier) {
         let p2 = std::array::from_fn(|i| p3[i] - b * t1[i]);
         Bezier::new(&[p0, p1, p2, p3])
     };
-    let mut best: Option<(f64, Bezier)> = None;
-    // At u = v = h/3 the equations are singular to leading order, so that lopsided starts are tried too.
-    for lopsided in [0.0, 0.12, -0.12] {
+    let mut best = (f64::INFINITY, length / 3.0, length / 3.0);
+    // At u = v = h/3 the equations are singular to leading order, so that lopsided starts are tried too; very lopsided
+    // ones for cusps, where one length vanishes.
+    for lopsided in [0.0, 0.12, -0.12, 0.85, -0.85] {
         let (a, b) = lengths(&window, length, &make, (t0, t1), lopsided);
-        let piece = make(a, b);
-        let error = MEASURED.iter().fold(0.0, |most, p| f64::max(most, off(&window, &piece, *p)));
-        if best.is_none_or(|(known, _)| error < known) {
-            best = Some((error, piece));
+        let error = measured(&window, &make(a, b), best.0);
+        if error < best.0 {
+            best = (error, a, b);
         }
     }
-    best.unwrap_or((f64::INFINITY, Bezier::line(p0, p3)))
+    // Through two places is best for short pieces. Where a long one nearly holds, the least greatest distance is sought.
+    if tolerance < best.0 && best.0 < REACH * tolerance {
+        let mut step = 0.08 * length;
+        while tolerance < best.0 && LEAST_STEP * length < step {
+            let around = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
+            let better = around.into_iter().find_map(|(x, y)| {
+                let (a, b) = (best.1 + step * x, best.2 + step * y);
+                let error =
+                    if 0.0 < a.min(b) { measured(&window, &make(a, b), best.0) } else { f64::INFINITY };
+                (error < best.0).then_some((error, a, b))
+            });
+            match better {
+                Some(next) => best = next,
+                None => step *= 0.5,
+            }
+        }
+    }
+    (best.0, make(best.1, best.2))
+}
+
+/// The greatest distance of a piece from the curve at [`MEASURED`]; no more is looked at once it exceeds `most`. A piece
+/// that is much shorter than the curve does not run along all of it.
+fn measured(window: &Window<'_>, piece: &Bezier, most: f64) -> f64 {
+    let mut error = 0.0f64;
+    // The extremes are likely where the error of a short piece has them.
+    for p in [0.5, 0.18, 0.82].into_iter().chain(MEASURED) {
+        error = error.max(off(window, piece, p));
+        if most <= error {
+            return f64::INFINITY;
+        }
+    }
+    let mut last = piece.start();
+    let length: f64 = MEASURED
+        .iter()
+        .map(|p| distance(&std::mem::replace(&mut last, piece.eval(*p)), &piece.eval(*p)))
+        .sum();
+    if length + distance(&last, &piece.end()) < SHORT * window.length() { f64::INFINITY } else { error }
 }
 
 /// The distance of a place of a piece from the curve.
@@ -255,13 +303,18 @@ fn lengths(
     let (mut jj, mut jr, mut rr) = normal(a, b);
     let mut damping = 1.0e-4;
     for _ in 0..40 {
+        // Along a straight part no length makes a difference, and rounding alone would choose one.
+        if jj[0] + jj[2] < STRAIGHT {
+            break;
+        }
         let trace = damping * (jj[0] + jj[2]) + f64::MIN_POSITIVE;
         let (m00, m11) = (jj[0] + trace, jj[2] + trace);
         let determinant = m00 * m11 - jj[1] * jj[1];
         let da = -(m11 * jr[0] - jj[1] * jr[1]) / determinant;
         let db = -(m00 * jr[1] - jj[1] * jr[0]) / determinant;
         let (next_a, next_b) = (a + da, b + db);
-        let allowed = 0.02 * length < next_a && 0.02 * length < next_b && next_a + next_b < 1.6 * length;
+        let within = |x: f64| 1.0e-6 * length < x && x < 1.2 * length;
+        let allowed = within(next_a) && within(next_b) && next_a + next_b < 1.6 * length;
         let found = if allowed { Some(normal(next_a, next_b)) } else { None };
         match found {
             Some(next) if next.2 < rr => {

@@ -188,12 +188,12 @@ impl Nurbs {
 }
 
 impl Nurbs {
-    /// The same curve without one of its knots at `t`, and how far a control point moves, mm; none where `t` is no inner
+    /// The same curve without one of its knots at `t`, and how far the curve moves at most, mm; none where `t` is no inner
     /// knot.
     ///
     /// The control points whose support holds `t` are blossom values of the span before it and of the span behind it.
     /// Where the curve is smooth enough they agree; of those whose knots stand on both sides of `t` the middle is taken,
-    /// the others stay.
+    /// the others stay. How far the curve moves is told by its control points once the knot is put back.
     fn without_knot(&self, t: f64) -> Option<(Nurbs, f64)> {
         let p = self.degree();
         let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
@@ -212,37 +212,40 @@ impl Nurbs {
         let window = &self.knots()[low..(high + p + 3).min(self.knots().len())];
         let raw = Raw { degree: p, knots: window, points: &homogeneous };
         let (span_before, span_behind) = (at - 1 - low, behind - 1 - low);
-        let mut moved = 0.0f64;
         let (mut points, mut weights) = (self.points().to_vec(), self.weights().to_vec());
         points.remove(at - 1);
         weights.remove(at - 1);
         for i in low..high.min(points.len()) {
             let u = &knots[i + 1..=i + p];
-            if !(knots[i] < t && t < knots[i + p + 1]) {
+            if !(u[0] < t && t < u[p - 1]) {
                 continue;
             }
             let (a, b) = (raw.blossom(span_before, u), raw.blossom(span_behind, u));
-            let place = |h: &Homogeneous| -> Position { std::array::from_fn(|axis| h[axis] / h[MAX_AXES]) };
-            let (pa, pb) = (place(&a), place(&b));
-            let apart = pa.iter().zip(&pb).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
-            moved = moved.max(apart);
-            let both_sides = u[0] < t && t < u[p - 1];
             if !self.is_polynomial() {
-                // A weight that differs moves the curve by no more than its share of the polygon's size.
-                moved = moved.max((a[MAX_AXES] / b[MAX_AXES] - 1.0).abs() * size(&points));
-                if both_sides {
-                    weights[i] = 0.5 * (a[MAX_AXES] + b[MAX_AXES]);
-                }
+                weights[i] = 0.5 * (a[MAX_AXES] + b[MAX_AXES]);
             }
-            if !both_sides {
-                continue;
-            }
-            points[i] = std::array::from_fn(|axis| 0.5 * (pa[axis] + pb[axis]));
+            let place = |axis: usize| 0.5 * (a[axis] / a[MAX_AXES] + b[axis] / b[MAX_AXES]);
+            points[i] = std::array::from_fn(place);
         }
-        Nurbs::new(p, knots, points, weights).ok().map(|spline| (spline, moved))
+        let spline = Nurbs::new(p, knots, points, weights).ok()?;
+        let again = spline.with_knot(t);
+        let near = low.saturating_sub(1)..(high + 2).min(self.points().len());
+        let mut moved = 0.0f64;
+        for i in near.clone() {
+            let (p, q) = (&again.points()[i], &self.points()[i]);
+            moved = moved.max(p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt());
+        }
+        if !self.is_polynomial() {
+            // A weight that is off by a share e moves the curve by at most 2e of the polygon's size.
+            let off = |i: usize| (again.weights()[i] / self.weights()[i] - 1.0).abs();
+            moved += 2.0
+                * near.map(off).fold(0.0, f64::max)
+                * size(&self.points()[low..=high.min(self.points().len() - 1)]);
+        }
+        Some((spline, moved))
     }
 
-    /// The same curve without the knots that it can do without, no control point moved by more than `slack` mm for any.
+    /// The same curve without the knots that it can do without, moved by no more than `slack` mm for any.
     #[must_use]
     pub fn without_needless_knots(&self, slack: f64) -> Nurbs {
         let mut spline = self.clone();

@@ -4,13 +4,14 @@
 //! other. Curves that meet may stand in one run of blocks: where one of them ends is where a block ends at its end,
 //! rounded, about as far along as the curve is long.
 
-use super::{Cursor, Found, Status};
+use super::{Cursor, Found, Status, to_nurbs};
 use crate::decimal::round_units;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric};
 use crate::geom::follow::follow;
+use crate::geom::nurbs::Nurbs;
 use crate::ir::{Curve, Polyline, Units, Written, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::approximate::{Frame, approximate};
@@ -26,6 +27,40 @@ pub(super) struct Asked<'a> {
     /// The radius at which rotary axes count, mm.
     pub(super) radius: f64,
     pub(super) tolerance: f64,
+}
+
+/// The pieces of `curve`, cut where the knots of `path` stand at the same share of the whole, to 1e-9 of it; none where a
+/// knot of `curve` has none in `path`.
+fn cut_like(curve: &Nurbs, path: &Nurbs) -> Option<Vec<Bezier>> {
+    let ends = |nurbs: &Nurbs| -> Vec<f64> {
+        let total: f64 = nurbs.beziers().map(|(_, length)| length).sum();
+        let mut along = 0.0;
+        nurbs
+            .beziers()
+            .map(|(_, length)| {
+                along += length / total;
+                along
+            })
+            .collect()
+    };
+    let (own, other) = (ends(curve), ends(path));
+    let mut pieces = Vec::with_capacity(other.len());
+    let (mut start, mut next) = (0.0, 0);
+    for ((piece, _), end) in curve.beziers().zip(&own) {
+        let mut from = 0.0;
+        while *other.get(next)? < end - 1.0e-9 {
+            let to = (other[next] - start) / (end - start);
+            pieces.push(piece.segment(from, to));
+            from = to;
+            next += 1;
+        }
+        if 1.0e-9 < (other[next] - end).abs() {
+            return None;
+        }
+        pieces.push(piece.segment(from, 1.0));
+        (start, next) = (*end, next + 1);
+    }
+    Some(pieces)
 }
 
 impl Cursor<'_> {
@@ -49,6 +84,14 @@ impl Cursor<'_> {
         let (path, blocks) = self.path(written, &last.end(), found.cutting_length)?;
         let kinds: Vec<Kind> = self.decimals.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
         let metric = Metric::new(&kinds, asked.radius);
+        // Knots that were inserted cut the curve where they cut the path.
+        let pieces = match (asked.curve, written) {
+            (Curve::Nurbs(curve), Written::Nurbs(nurbs)) => {
+                to_nurbs(self.decimals, nurbs).ok().and_then(|path| cut_like(curve, &path)).unwrap_or(pieces)
+            }
+            (Curve::Nurbs(_) | Curve::Lines(_) | Curve::Polynomial(_), _)
+            | (Curve::Through(..) | Curve::Logarithmic(_), _) => pieces,
+        };
         let scaled = |pieces: &[Bezier]| pieces.iter().map(|piece| metric.scaled(piece)).collect::<Vec<_>>();
         let followed = follow(&scaled(&path), &scaled(&pieces), asked.tolerance)
             .map_err(|error| self.differs("order-differs", error.to_string()))?;

@@ -42,7 +42,8 @@ fn lifted(piece: &Bezier, i: usize, scale: f64) -> [f64; MAX_AXES + 1] {
 ///
 /// Where two pieces meet in one direction the spans are made as long as their end derivatives, so that the derivative
 /// is continuous and the joint needs a double knot only; at corners, and between lines, whose points are asked for as
-/// they are, it is triple. Then every knot is taken out that the pieces can do without: a joint of a curve that is
+/// they are, it is triple. Pieces that were read from decimals meet smoothly but for rounding: a control point that a₁,
+/// a₂ and a₃ make is off by up to three half units of the last decimal, and so two units are allowed. Then every knot is taken out that the pieces can do without: a joint of a curve that is
 /// smoother yet needs a single knot, one inside a single polynomial none. Only ratios of knots count: the
 /// first span is as long as its path in mm, and everything is scaled up where a span would be shorter than 1. Knots
 /// are then chosen on the control's decimals, and the knots that bring the spline to the least number of blocks are
@@ -82,7 +83,7 @@ pub fn joined(
         if may_be_smooth
             && 0.0 < a
             && 0.0 < b
-            && size(&turn) < SMOOTH.max(2.0 * resolution(machine) / a.min(b))
+            && size(&turn) < SMOOTH.max(4.0 * resolution(machine) / a.min(b))
         {
             lengths.push(last * a / b);
             smooth.push(true);
@@ -102,7 +103,7 @@ pub fn joined(
     }
     let mut spline = Nurbs::joined(&pieces, &lengths, &smooth).map_err(|error| error.to_string())?;
     if may_be_smooth {
-        spline = spline.without_needless_knots(resolution(machine));
+        spline = spline.without_needless_knots(4.0 * resolution(machine));
     }
     finished(spline, rules, machine)
 }
