@@ -119,8 +119,9 @@ impl Writer<'_> {
                 let coefficients = used(&block.coefficients[i]);
                 let divided = block.denominator.is_some_and(|denominator| denominator.divides[i]);
                 if coefficients.is_empty() && !divided {
-                    // Beside a denominator an axis that rests is not named.
-                    if block.denominator.is_none() {
+                    // An axis that rests is left out, whatever it does in other blocks of the run, which may be read as one
+                    // run with the next curve's.
+                    if self.modal.position[i] != Some(block.end[i]) {
                         self.modal.axis(i, block.end[i]);
                     }
                     continue;
