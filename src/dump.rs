@@ -20,8 +20,10 @@ pub fn intent(intent: &Intent) -> String {
                 let _ = writeln!(text, "polynomial");
                 for piece in pieces {
                     let _ = writeln!(text, "  piece of degree {}", piece.degree);
-                    for point in piece.control_points() {
-                        let _ = writeln!(text, "    {}", position(&axes, point));
+                    for (point, weight) in piece.control_points().iter().zip(piece.weights) {
+                        let weight =
+                            if piece.is_polynomial() { String::new() } else { format!(" weight {weight}") };
+                        let _ = writeln!(text, "    {}{weight}", position(&axes, point));
                     }
                 }
             }
@@ -86,6 +88,10 @@ pub fn decimals(decimals: &Decimals) -> String {
                 let _ = writeln!(text, "polynomial from {}", at(&polynomial.start));
                 for block in &polynomial.blocks {
                     let _ = writeln!(text, "  to {} over {}", at(&block.end), block.pl);
+                    if let Some(denominator) = &block.denominator {
+                        let [d2, d3, d4, d5] = denominator.coefficients;
+                        let _ = writeln!(text, "    divided by {} {d2} {d3} {d4} {d5}", denominator.end);
+                    }
                     for (i, (axis, _)) in axes.as_slice().iter().enumerate() {
                         let [a2, a3, a4, a5] = block.coefficients[i];
                         let _ = writeln!(text, "    {axis} {a2} {a3} {a4} {a5}");

@@ -11,11 +11,12 @@
 //! A [`Step::Comment`] starts a section: writers forget all modal state there, so that a program can be restarted.
 
 use crate::decimal::{Decimal, units_to_f64};
+use crate::diagnostic::Diagnostics;
 use crate::geom::bezier::Bezier;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
-use crate::units::{Axes, MAX_AXES, Position};
+use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 
 /// A program: a name, its coordinates, its steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,9 +120,37 @@ pub struct Intent {
     pub tolerance: Option<(f64, Span)>,
     /// Where the program's name stands in the input.
     pub name_span: Option<Span>,
+    /// The radius at which rotary axes count, mm, where the input states one.
+    pub radius: Option<f64>,
+    /// What to know about it.
+    pub warnings: Diagnostics,
 }
 
 impl Intent {
+    /// Whether a program can be made of it: every cut has its feed, and a tool is called.
+    pub fn is_complete(&self) -> bool {
+        let fed = |step: &Step<f64, Curve>| match step {
+            Step::Cut(cut) => cut.feed.is_some(),
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_) => true,
+        };
+        let steps = &self.program.steps;
+        steps.iter().all(|located| fed(&located.step))
+            && steps.iter().any(|located| matches!(located.step, Step::Tool(_)))
+    }
+
+    /// The radius at which rotary axes count, mm: the cutter's greatest, or the one that the input states. Where nobody says,
+    /// a degree counts as a millimetre.
+    pub fn radius(&self) -> f64 {
+        let own = self.logarithmic().map(|(log, ..)| log.curve.max_radius()).fold(0.0, f64::max);
+        self.radius.unwrap_or(if own == 0.0 { DEGREES } else { own })
+    }
+
     /// Its logarithmic paths with their feeds, and where each was asked for.
     pub fn logarithmic(&self) -> impl Iterator<Item = (&Logarithmic, Option<f64>, Span)> {
         self.program.steps.iter().filter_map(|located| match located.step.cut()? {
@@ -147,6 +176,21 @@ pub enum Curve {
     Through(ThroughKind, Polyline),
     /// The path of a conical cutter's flute.
     Logarithmic(Logarithmic),
+}
+
+impl Curve {
+    /// The pieces that it is made of, end to start; none of a logarithmic curve, nor of one that only the control knows.
+    pub fn pieces(&self) -> Vec<Bezier> {
+        match self {
+            Curve::Lines(line) => {
+                let mut from = line.start;
+                line.points().map(|to| Bezier::line(std::mem::replace(&mut from, to), to)).collect()
+            }
+            Curve::Polynomial(pieces) => pieces.clone(),
+            Curve::Nurbs(nurbs) => nurbs.beziers().map(|(piece, _)| piece).collect(),
+            Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
+        }
+    }
 }
 
 /// A logarithmic curve and how it is to be followed.
@@ -320,6 +364,12 @@ pub const COEFFICIENTS: usize = 4;
 /// ```text
 /// a₁ = (end − a₀ − a₂ PL² − … − a₅ PL⁵) / PL
 /// ```
+///
+/// With a denominator D(p) = 1 + d₁p + d₂p² + … a coordinate is N(p)/D(p), and N(PL) = end · D(PL):
+///
+/// ```text
+/// d₁ = (D(PL) − 1 − d₂ PL² − …) / PL          a₁ = (end · D(PL) − a₀ − a₂ PL² − …) / PL
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolynomialBlock {
     /// The parameter's length.
@@ -328,39 +378,69 @@ pub struct PolynomialBlock {
     pub end: Units,
     /// a₂ … a₅ for each axis.
     pub coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
+    /// The denominator of a rational block.
+    pub denominator: Option<Denominator>,
     /// The line of the text that it came from, or 0.
     pub line: u32,
+}
+
+/// The denominator of a rational block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Denominator {
+    /// D(PL).
+    pub end: Decimal,
+    /// d₂ … d₅.
+    pub coefficients: [Decimal; COEFFICIENTS],
+    /// The axes whose coordinates it divides; others rest.
+    pub divides: [bool; MAX_AXES],
+}
+
+/// a₁ … of a polynomial with this constant, this value at `length` and these a₂ …, as Bezier ordinates.
+fn ordinates(first: f64, last: f64, rest: &[Decimal], length: f64) -> [f64; 6] {
+    let degree = rest.len() + 1;
+    let mut a = [first, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let (mut power, mut linear) = (length, last - first);
+    for (k, coefficient) in rest.iter().enumerate() {
+        power *= length;
+        a[k + 2] = coefficient.to_f64();
+        linear -= a[k + 2] * power;
+    }
+    a[1] = linear / length;
+    let mut ordinates = Bezier::ordinates(&a[..=degree], length);
+    ordinates[degree] = last;
+    ordinates
 }
 
 impl PolynomialBlock {
     /// The block as a Bezier piece from `start`.
     pub fn to_bezier(&self, digits: &[u8; MAX_AXES], start: &Units) -> Bezier {
-        let degree = 1 + COEFFICIENTS
-            - (0..COEFFICIENTS)
-                .rev()
-                .take_while(|k| self.coefficients.iter().all(|axis| axis[*k].is_zero()))
-                .count();
+        let used = |coefficients: &[Decimal; COEFFICIENTS]| {
+            COEFFICIENTS - coefficients.iter().rev().take_while(|a| a.is_zero()).count()
+        };
+        let below = self.denominator.map_or(0, |denominator| used(&denominator.coefficients));
+        let count = self.coefficients.iter().map(used).max().unwrap_or(0).max(below);
+        let degree = 1 + count;
         let length = self.pl.to_f64();
-        let mut points = [[0.0; MAX_AXES]; 6];
+        let mut piece = Bezier::new(&[[0.0; MAX_AXES]; 6][..=degree]);
+        if let Some(denominator) = &self.denominator {
+            let end = denominator.end.to_f64();
+            piece.weights = ordinates(1.0, end, &denominator.coefficients[..count], length);
+        }
         for axis in 0..MAX_AXES {
             let (first, last) =
                 (units_to_f64(start[axis], digits[axis]), units_to_f64(self.end[axis], digits[axis]));
-            let mut a = [first, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let mut power = length;
-            let mut rest = last - first;
-            for k in 0..COEFFICIENTS {
-                power *= length;
-                a[k + 2] = self.coefficients[axis][k].to_f64();
-                rest -= a[k + 2] * power;
+            if self.denominator.is_some_and(|denominator| !denominator.divides[axis]) {
+                piece.points.iter_mut().for_each(|point| point[axis] = first);
+                continue;
             }
-            a[1] = rest / length;
-            let ordinates = Bezier::ordinates(&a[..=degree], length);
+            let whole = last * piece.weights[degree];
+            let numerator = ordinates(first, whole, &self.coefficients[axis][..count], length);
             for i in 0..=degree {
-                points[i][axis] = ordinates[i];
+                piece.points[i][axis] = numerator[i] / piece.weights[i];
             }
-            points[degree][axis] = last;
+            piece.points[degree][axis] = last;
         }
-        Bezier::new(&points[..=degree])
+        piece
     }
 }
 

@@ -126,7 +126,7 @@ pub fn compile(
     }
     length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
-    let mut warnings = Diagnostics::new();
+    let mut warnings = intent.warnings.clone();
     let asked = options.motion.or(machine.motion);
     let motion = match asked {
         Some(motion) => motion,
@@ -142,10 +142,23 @@ pub fn compile(
     // the fit is made finer. Lines are never refined: their points are asked for as they are.
     let left = tolerance - resolution(&intent, &machine).min(0.5 * tolerance);
     let mut failure = Failure::from(Diagnostics::new());
-    for share in [1.0, 0.7, 0.4, 0.2, 0.05] {
-        match attempt(&intent, motion, &machine, tolerance, share * left, options.no_verify) {
-            Ok(Attempt { text, report, setup, warnings: found }) => {
+    // An exact form that rounding spoils is given up only where no finer fit of the others helps.
+    let exact = [1.0, 0.7, 0.4, 0.2, 0.05].map(|share| (share, true));
+    let fitted = [1.0, 0.5, 0.1].map(|share| (share, false));
+    for (share, exact) in exact.into_iter().chain(fitted) {
+        let attempt = Attempt {
+            motion,
+            machine: &machine,
+            tolerance,
+            fit: share * left,
+            exact,
+            asked: asked.is_some(),
+            no_verify: options.no_verify,
+        };
+        match attempt.run(&intent) {
+            Ok(Attempted { text, report, setup, warnings: found }) => {
                 warnings.extend(found);
+                warnings.extend(pass::approximate::notes(&intent, motion.form, &machine, !attempt.exact));
                 if let Some(report) = &report {
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
                 }
@@ -154,7 +167,7 @@ pub fn compile(
             Err(error) => {
                 let refine = error.diagnostics.0.iter().all(|d| d.id == "deviation-too-large");
                 failure = error;
-                if !refine {
+                if !refine || (exact && share == 0.05 && !pass::approximate::may_be_exact(&intent)) {
                     break;
                 }
             }
@@ -164,7 +177,7 @@ pub fn compile(
 }
 
 /// A program that came through all passes.
-struct Attempt {
+struct Attempted {
     text: String,
     report: Option<Report>,
     setup: Setup,
@@ -172,34 +185,41 @@ struct Attempt {
 }
 
 /// One way through all passes, with a fit of its own tolerance.
-fn attempt(
-    intent: &Intent,
-    motion: &Motion,
-    machine: &Machine,
+struct Attempt<'a> {
+    motion: &'static Motion,
+    machine: &'a Machine,
     tolerance: f64,
     fit: f64,
+    exact: bool,
+    asked: bool,
     no_verify: bool,
-) -> Result<Attempt, Failure> {
-    let program = pass::interpolate::interpolate(intent, motion.form, machine, fit, tolerance)?;
-    let mut program = pass::convert::convert(program, motion.form, machine)?;
-    if no_verify && let Some(span) = program.steps.first().map(|located| located.span) {
-        program.steps.insert(0, Located { step: Step::Comment("NOT VERIFIED".to_owned()), span });
-    }
-    let mut decimals = pass::quantise::quantise(program, motion.form, machine, tolerance, radius(intent))?;
-    let setup = Setup::new(intent, &decimals, machine);
-    decimals.setup = setup.remarks(machine);
-    let legal = pass::check::check(decimals, machine)?;
-    let text = (machine.dialect.write)(&legal.value, machine);
-    let warnings = legal.warnings;
-    if no_verify {
-        return Ok(Attempt { text, report: None, setup, warnings });
-    }
-    // The reading alone is needed from here on.
-    drop(legal.value);
-    match verify_text(intent, &text, SourceId::PROGRAM, machine, tolerance) {
-        Ok(report) => Ok(Attempt { text, report: Some(report), setup, warnings }),
-        Err(diagnostics) => {
-            Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) })
+}
+
+impl Attempt<'_> {
+    fn run(&self, intent: &Intent) -> Result<Attempted, Failure> {
+        let Attempt { machine, tolerance, fit, exact, no_verify, .. } = *self;
+        let form = self.motion.form;
+        let program = pass::interpolate::interpolate(intent, form, machine, (fit, tolerance), exact)?;
+        let mut program = pass::convert::convert(program, form, machine, self.asked)?;
+        if no_verify && let Some(span) = program.steps.first().map(|located| located.span) {
+            program.steps.insert(0, Located { step: Step::Comment("NOT VERIFIED".to_owned()), span });
+        }
+        let mut decimals = pass::quantise::quantise(program, form, machine, tolerance, intent.radius())?;
+        let setup = Setup::new(intent, &decimals, machine);
+        decimals.setup = setup.remarks(machine);
+        let legal = pass::check::check(decimals, machine)?;
+        let text = (machine.dialect.write)(&legal.value, machine);
+        let warnings = legal.warnings;
+        if no_verify {
+            return Ok(Attempted { text, report: None, setup, warnings });
+        }
+        // The reading alone is needed from here on.
+        drop(legal.value);
+        match verify_text(intent, &text, SourceId::PROGRAM, machine, tolerance) {
+            Ok(report) => Ok(Attempted { text, report: Some(report), setup, warnings }),
+            Err(diagnostics) => {
+                Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) })
+            }
         }
     }
 }
@@ -262,7 +282,8 @@ pub fn verify_program(
     };
     let legal = pass::check::check(reading.value.decimals, &machine)?;
     verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
-    let mut warnings = reading.warnings;
+    let mut warnings = intent.warnings.clone();
+    warnings.extend(reading.warnings);
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
     Ok(Verified { report, intent, tolerance, warnings })
 }
@@ -323,14 +344,9 @@ fn overrun_without_steps(intent: &Intent) -> Diagnostics {
     warnings
 }
 
-/// The greatest radius at which a rotary axis counts, mm.
-fn radius(intent: &Intent) -> f64 {
-    intent.logarithmic().map(|(log, ..)| log.curve.max_radius()).fold(0.0, f64::max)
-}
-
 /// What half a unit of the last decimal in every axis makes at the surface, mm.
 fn resolution(intent: &Intent, machine: &Machine) -> f64 {
-    0.5 * decimal::unit_at_surface(&machine.axes, &machine.axis_digits(), radius(intent))
+    0.5 * decimal::unit_at_surface(&machine.axes, &machine.axis_digits(), intent.radius())
 }
 
 /// The tolerance that holds: the command line's, the input's, the machine's.

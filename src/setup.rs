@@ -4,10 +4,11 @@
 use crate::decimal::Decimal;
 use crate::dialect::Form;
 use crate::dialect::parts::Assigned;
-use crate::ir::{Decimals, Intent, Step, Written};
+use crate::ir::{Curve, Decimals, Intent, Role, Step, Written};
 use crate::machine::{Machine, Moves};
+use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
-use crate::units::Kind;
+use crate::units::{Axes, Kind};
 use serde::Serialize;
 
 /// The figures of a program on one machine.
@@ -80,10 +81,8 @@ impl Setup {
         });
         let mut home: Vec<String> = home.collect();
         home.dedup();
-        let minutes: Vec<f64> = intent
-            .logarithmic()
-            .filter_map(|(log, feed, _)| Some(log.curve.amount(log.along) / feed?))
-            .collect();
+        let paths = steps().filter_map(|step| step.cut()).filter(|cut| cut.role == Role::Path);
+        let minutes: Vec<f64> = paths.filter_map(|cut| Some(amount(&cut.curve, &axes) / cut.feed?)).collect();
         let range = minutes.iter().fold(None, |range: Option<[f64; 2]>, m| {
             Some(range.map_or([*m, *m], |[least, most]| [least.min(*m), most.max(*m)]))
         });
@@ -164,6 +163,16 @@ impl Setup {
         }
         lines.push(format!("NOT PROVED: {}", self.not_covered.join(", ").to_uppercase()));
         lines
+    }
+}
+
+/// How much of what its feed is a speed of passes along a curve, mm or degrees.
+fn amount(curve: &Curve, axes: &Axes) -> f64 {
+    match curve {
+        Curve::Logarithmic(log) => log.curve.amount(log.along),
+        Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
+            curve.pieces().iter().map(|piece| linear_length(piece, axes)).sum()
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a compilation tells beside the program.
 
+use crate::geom::follow::Map;
 use crate::ir::{Intent, Step};
 use crate::machine::Machine;
 use crate::setup::Setup;
@@ -32,9 +33,11 @@ pub struct Summary {
     pub tolerance: f64,
     /// `proved`, `points-only` or `not verified`.
     pub status: &'static str,
-    /// The greatest deviation at the cutter's surface, mm.
+    /// The map that the deviation of curves holds for.
+    pub map: Option<&'static str>,
+    /// The greatest deviation, at the surface of a cutter, mm.
     pub deviation_mm: Option<f64>,
-    /// The greatest deviation in A, radians.
+    /// The greatest deviation in a rotary axis, radians.
     pub deviation_rad: Option<f64>,
     /// Where lines follow odd-even steps: the steps' distance from the ideal curve, mm.
     pub steps_from_ideal_mm: Option<f64>,
@@ -91,10 +94,12 @@ impl Summary {
                     .to_owned(),
             );
         }
-        notes.push(
-            "the path is that of the contact point; the wheel's radius and profile are not modelled"
-                .to_owned(),
-        );
+        if intent.logarithmic().next().is_some() {
+            notes.push(
+                "the path is that of the contact point; the wheel's radius and profile are not modelled"
+                    .to_owned(),
+            );
+        }
         if report.is_some() {
             notes.push(
             "the proof covers the programmed path, not what the control's own smoothing or compressor adds"
@@ -113,6 +118,7 @@ impl Summary {
             feed_error: report.map(|r| r.feed_error),
             tolerance,
             status: report.map_or("not verified", |r| r.status.word()),
+            map: report.and_then(|r| r.map).map(Map::words),
             deviation_mm: report.map(|r| r.deviation.mm),
             deviation_rad: report.map(|r| r.deviation.rad),
             steps_from_ideal_mm: report.and_then(|r| r.from_ideal).map(|b| b.mm),
@@ -161,9 +167,17 @@ impl Summary {
         }
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
+                let where_to = if self.cutter.is_some() {
+                    format!(" at the surface, {rad:.2e} rad in A")
+                } else if 0.0 < rad {
+                    format!(", {rad:.2e} rad in rotary axes")
+                } else {
+                    String::new()
+                };
+                let map = self.map.map_or(String::new(), |map| format!(" {map}"));
                 let _ = writeln!(
                     text,
-                    "  deviation  {mm:.2e} mm at the surface, {rad:.2e} rad in A, {} (tolerance {} mm)",
+                    "  deviation  {mm:.2e} mm{where_to}, {}{map} (tolerance {} mm)",
                     self.status, self.tolerance
                 );
             }

@@ -17,22 +17,29 @@ pub struct Key {
     pub inner: &'static [Key],
     /// Whether it is a table of tables with any names, `inner` being the keys of each.
     pub each: bool,
+    /// Whether it is a list of tables, `inner` being the keys of each.
+    pub list: bool,
 }
 
 impl Key {
     /// A key with a value.
     pub const fn value(name: &'static str) -> Key {
-        Key { name, inner: &[], each: false }
+        Key { name, inner: &[], each: false, list: false }
     }
 
     /// A key with a table.
     pub const fn table(name: &'static str, inner: &'static [Key]) -> Key {
-        Key { name, inner, each: false }
+        Key { name, inner, each: false, list: false }
     }
 
     /// A key with a table of tables, each of any name and with the same keys.
     pub const fn each(name: &'static str, inner: &'static [Key]) -> Key {
-        Key { name, inner, each: true }
+        Key { name, inner, each: true, list: false }
+    }
+
+    /// A key with a list of tables, each with the same keys.
+    pub const fn tables(name: &'static str, inner: &'static [Key]) -> Key {
+        Key { name, inner, each: false, list: true }
     }
 }
 
@@ -77,6 +84,8 @@ fn from_toml(error: &toml::de::Error, source: SourceId) -> Diagnostic {
         ("expected u32", "expected a whole number"),
         ("expected usize", "expected a whole number"),
         ("expected struct", "expected a table"),
+        ("expected a sequence", "expected a list"),
+        ("expected a map", "expected a table"),
     ] {
         if let Some(at) = phrase.find(rust) {
             phrase.truncate(at);
@@ -108,6 +117,10 @@ fn walk(table: &DeTable<'_>, keys: &[Key], within: &str, source: SourceId, diagn
             diagnostics.push(diagnostic);
             continue;
         };
+        if known.list {
+            list(value, known, source, diagnostics);
+            continue;
+        }
         if !known.inner.is_empty() && !value.get_ref().is_table() {
             diagnostics.push(
                 Diagnostic::error("value-kind", format!("`{name}` is a table"))
@@ -125,6 +138,26 @@ fn walk(table: &DeTable<'_>, keys: &[Key], within: &str, source: SourceId, diagn
                     walk(table, known.inner, &format!("{path}.{}", name.get_ref()), source, diagnostics);
                 }
             }
+        }
+    }
+}
+
+/// The tables of a list, each walked on its own.
+fn list(value: &toml::Spanned<DeValue<'_>>, known: &Key, source: SourceId, diagnostics: &mut Diagnostics) {
+    let name = known.name;
+    let mut wrong = |place: std::ops::Range<usize>| {
+        diagnostics.push(
+            Diagnostic::error("value-kind", format!("`{name}` is a list of tables, each under [[{name}]]"))
+                .at(Span::new(source, place), "not a list of tables"),
+        );
+    };
+    let DeValue::Array(items) = value.get_ref() else { return wrong(value.span()) };
+    if let Some(item) = items.iter().find(|item| !item.get_ref().is_table()) {
+        return wrong(item.span());
+    }
+    for item in items {
+        if let DeValue::Table(table) = item.get_ref() {
+            walk(table, known.inner, &format!("[{name}]"), source, diagnostics);
         }
     }
 }

@@ -9,12 +9,16 @@
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
 //! | either | the control's own spline through points | the points only | points-only |
+//! | lines | lines | point by point | proved |
+//! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
 //!
 //! Where a path starts late or ends early by some rounding, the rest of the curve is missed by no more than that times
 //! the curve's own speed, which is added to the bound.
 //!
 //! What the control adds (G642, COMPCAD, cycle 32, G61.1) is not covered.
 
+mod curve;
+mod form;
 mod logarithmic;
 
 use crate::decimal::{Decimal, Origin, round_units};
@@ -22,15 +26,19 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Reading;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
+use crate::geom::follow::Map;
 use crate::geom::nurbs::{Nurbs, NurbsError};
 use crate::ir::{
     Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Shift, Step, Units, Written,
     WrittenPoints,
 };
 use crate::machine::Machine;
+use crate::pass::stretch::of_curve;
 use crate::setup::Setup;
 use crate::source::{SourceId, Span};
-use crate::units::{MAX_AXES, Position};
+use crate::units::{Kind, MAX_AXES, Position};
+
+pub use form::same_form;
 
 /// How sure the deviation is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,6 +68,8 @@ pub struct Report {
     pub status: Status,
     /// Where the intent is odd-even steps: their distance from the ideal curve.
     pub from_ideal: Option<Bound>,
+    /// The map that the deviation of curves holds for, where it needed one of its own.
+    pub map: Option<Map>,
     /// Blocks that cut.
     pub path_blocks: usize,
     /// The paths' length, mm.
@@ -92,6 +102,7 @@ pub fn verify(
         deviation: Bound::ZERO,
         status: Status::Proved,
         from_ideal: None,
+        map: None,
         path_blocks: 0,
         cutting_length: 0.0,
         minutes: 0.0,
@@ -127,7 +138,8 @@ pub fn verify(
         return Err(Diagnostic::refusal("number-differs", message).into());
     }
     let origin = [Origin::default(); MAX_AXES];
-    let mut cursor = Cursor { decimals, machine, text, id, at: 0, within: 0, origin };
+    let radius = intent.radius();
+    let mut cursor = Cursor { decimals, machine, text, id, at: 0, within: 0, origin, radius, map: None };
     let mut ideal = Ideal(None);
     for located in &intent.program.steps {
         match &located.step {
@@ -169,7 +181,7 @@ pub fn verify(
             Step::Cut(Cut { feed, role, curve }) => {
                 cursor.skip_comments();
                 let (at, within) = (cursor.at, cursor.within);
-                let found = cursor.cut(curve, *feed, tolerance, &mut ideal)?;
+                let found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
                 if !(found.deviation.mm <= tolerance) {
                     let message = format!(
                         "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
@@ -189,6 +201,7 @@ pub fn verify(
                     report.from_ideal =
                         Some(report.from_ideal.map_or(from_ideal, |known| known.max(from_ideal)));
                 }
+                report.map = cursor.map;
                 if *role == Role::Path {
                     report.path_blocks += found.path_blocks;
                     report.cutting_length += found.cutting_length;
@@ -228,6 +241,10 @@ struct Cursor<'p> {
     within: usize,
     /// Where each axis counts from, which is where it is rounded from.
     origin: [Origin; MAX_AXES],
+    /// The radius at which rotary axes count, mm.
+    radius: f64,
+    /// The map that the bounds hold for so far.
+    map: Option<Map>,
 }
 
 /// What one cut was found to be.
@@ -319,6 +336,12 @@ impl<'p> Cursor<'p> {
                 Some(number) => self.line(*number),
                 None => located.span,
             },
+            Step::Cut(Cut { curve: Written::Polynomial(polynomial), .. }) => {
+                match polynomial.blocks.get(self.within).filter(|block| block.line != 0) {
+                    Some(block) => self.line(block.line),
+                    None => located.span,
+                }
+            }
             Step::Cut(_)
             | Step::Comment(_)
             | Step::Tool(_)
@@ -370,19 +393,28 @@ impl<'p> Cursor<'p> {
     fn cut(
         &mut self,
         curve: &Curve,
-        feed: Option<f64>,
+        (feed, role): (Option<f64>, Role),
         tolerance: f64,
         ideal: &mut Ideal,
     ) -> Result<Found, Diagnostics> {
         let cut = self.written()?;
+        let axes = self.decimals.program.axes;
+        let counted = |feed: f64| of_curve(curve, feed, &axes, self.machine, self.radius);
+        let (asked, feed_error) = match (curve, feed.filter(|_| role == Role::Path)) {
+            (Curve::Logarithmic(_), _) | (_, None) => (feed, 0.0),
+            (_, Some(feed)) => (Some(counted(feed).0), counted(feed).1),
+        };
         if !matches!(curve, Curve::Logarithmic(_)) {
-            self.same_feed(cut.feed, feed)?;
+            self.same_feed(cut.feed, asked)?;
         }
-        match curve {
-            Curve::Lines(line) => self.lines(line, &cut.curve),
-            Curve::Logarithmic(log) => self.logarithmic(log, feed, tolerance, ideal),
-            Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
-                Err(self.differs("not-comparable", "this form of input cannot be compared yet".to_owned()))
+        match (curve, &cut.curve) {
+            (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written),
+            (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),
+            (Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..), written) => {
+                let (machine, radius) = (self.machine, self.radius);
+                let feed = cut.feed;
+                let found = self.curve(&curve::Asked { curve, machine, radius, tolerance, feed }, written)?;
+                Ok(Found { feed_error, ..found })
             }
         }
     }
@@ -427,9 +459,25 @@ impl<'p> Cursor<'p> {
             let read = self.decimals.position(&units);
             worst = (0..asked.stride).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
         }
+        let axes = self.decimals.program.axes;
+        let linear = |i: &usize| axes.kind(*i) == Kind::Linear;
+        let (mut from, mut length) = (asked.start, 0.0);
+        for to in asked.points() {
+            length += (0..asked.stride)
+                .filter(linear)
+                .map(|i| (to[i] - from[i]) * (to[i] - from[i]))
+                .sum::<f64>()
+                .sqrt();
+            from = to;
+        }
         let count = asked.count();
         self.leave(points);
-        Ok(Found { deviation: Bound { mm: worst, rad: 0.0 }, path_blocks: count, ..Found::new() })
+        Ok(Found {
+            deviation: Bound { mm: worst, rad: 0.0 },
+            path_blocks: count,
+            cutting_length: length,
+            ..Found::new()
+        })
     }
 
     /// The next point of a run.
@@ -484,38 +532,6 @@ impl<'p> Cursor<'p> {
     }
 }
 
-/// Compares a program with what would be written for the same meaning, line by line and word by word: a doubled or
-/// moved line may mean nothing to the path, and still show that somebody changed the program.
-///
-/// # Errors
-/// A line has other words.
-pub fn same_form(text: &str, written: &str, id: SourceId) -> Result<(), Diagnostics> {
-    let mut start = 0;
-    let mut expected = written.lines();
-    let differs = |range: std::ops::Range<usize>, line: Option<&str>| {
-        let message = "the program means what was asked, but this line is not as it would be written";
-        let diagnostic = Diagnostic::refusal("form-differs", message).at(Span::new(id, range), "");
-        Err(match line {
-            Some(line) => diagnostic.hint(format!("here `{line}` would stand")),
-            None => diagnostic,
-        }
-        .into())
-    };
-    for line in text.split_inclusive('\n') {
-        let range = start..start + line.trim_end().len();
-        start += line.len();
-        let words = line.trim_start_matches('\u{feff}').split_whitespace();
-        match expected.next() {
-            Some(own) if own.split_whitespace().eq(words) => {}
-            own => return differs(range, own),
-        }
-    }
-    match expected.next() {
-        Some(own) => differs(text.len()..text.len(), Some(own)),
-        None => Ok(()),
-    }
-}
-
 /// The B-spline that decimals mean.
 ///
 /// # Errors
@@ -538,7 +554,7 @@ pub fn to_nurbs(decimals: &Decimals, nurbs: &crate::ir::WrittenNurbs) -> Result<
 mod tests {
     use super::*;
     use crate::ir::{Program, WrittenNurbs};
-    use crate::units::Axes;
+    use crate::units::{Axes, MAX_AXES};
 
     #[test]
     fn small_spans_behind_a_large_one_stay_exact() {

@@ -13,7 +13,7 @@ use splinepost::{Options, Verified, front, verify_program};
 fn verified(input: &str, program: &str, machine: &Machine) -> Result<Verified, Diagnostics> {
     let mut sources = sources(input);
     let id = sources.push(Source::new("program", program));
-    let language = front::find("cutter").expect("the cutter language");
+    let language = front::detect(&Source::new("input.toml", input)).expect("a language");
     verify_program(&sources, language, id, machine, &Options::default())
 }
 
@@ -92,7 +92,7 @@ fn damaged(program: &str) -> Vec<(String, String)> {
         dropped.remove(i);
         add(format!("line {} dropped: {line}", i + 1), dropped);
         // A remark said twice changes nothing.
-        if !line.contains("FLUTE") {
+        if !line.contains("FLUTE") && !line.contains("CURVE") {
             let mut doubled = lines.clone();
             doubled.insert(i, line);
             add(format!("line {} doubled: {line}", i + 1), doubled);
@@ -163,6 +163,37 @@ fn every_fault_of_calls_offsets_and_rounds_is_refused() {
     println!("{tried} faults, {} missed", missed.len());
     assert!(missed.is_empty(), "{} of {tried} faults missed:\n{}", missed.len(), missed.join("\n"));
     assert!(1000 < tried, "only {tried} faults were tried");
+}
+
+/// Curves in one section: rational, cubic, quintic. No straight ones: there another pace along the line is the same path.
+const JOB: &str = "name = \"JOB\"\n[process]\nfeed = 1000\nretract = { axis = \"Z\", to = 50 }\n\
+    [[curve]]\nkind = \"nurbs\"\naxes = [\"X\", \"Y\"]\nat = { Z = -2 }\ndegree = 2\nknots = [0, 0, 0, 1, 1, 1]\n\
+    points = [[10, 0], [10, 10], [0, 10]]\nweights = [1, 0.75, 1]\n\
+    [[curve]]\nkind = \"bezier\"\naxes = [\"X\", \"Y\", \"Z\"]\npoints = [[0, 10, -2], [-10, 10, -3], [-20, 22, -4], [-20, 40, -6]]\n\
+    [[curve]]\nkind = \"polynomial\"\naxes = [\"X\", \"Y\"]\ncoefficients = [[-20, 20, 3, 0, 0, 10], [40, 5, 0, 0, -22]]\n";
+
+#[test]
+fn every_fault_of_a_job_is_refused() {
+    let mut missed = Vec::new();
+    let mut tried = 0;
+    for dialect in DIALECTS {
+        let machine =
+            machine(&format!("extends = \"{}\"\nname = \"plain\"\n[text]\nnumber_step = 0\n", dialect.name));
+        for motion in dialect.motions {
+            let program = compiled(JOB, &machine, Some(motion)).expect("it compiles").text;
+            verified(JOB, &program, &machine).unwrap_or_else(|e| panic!("{}: {e:?}\n{program}", motion.name));
+            for (what, text) in damaged(&program) {
+                tried += 1;
+                match verified(JOB, &text, &machine) {
+                    Ok(_) => missed.push(format!("{} {}: {what}", dialect.name, motion.name)),
+                    Err(errors) => assert!(Severity::Refusal <= errors.worst(), "{what}: no error"),
+                }
+            }
+        }
+    }
+    println!("{tried} faults, {} missed", missed.len());
+    assert!(missed.is_empty(), "{} of {tried} faults missed:\n{}", missed.len(), missed.join("\n"));
+    assert!(2000 < tried, "only {tried} faults were tried");
 }
 
 #[test]

@@ -26,8 +26,9 @@ fn bad_inputs_are_told_of() {
         }
         cases += 1;
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        let mut sources = Sources::new(Source::new(name, fs::read_to_string(path).expect("UTF-8")));
-        let language = front::find("cutter").expect("the cutter language");
+        let source = Source::new(name, fs::read_to_string(path).expect("UTF-8"));
+        let language = front::detect(&source).expect("a language");
+        let mut sources = Sources::new(source);
         match compile(&sources, language, &machine, &Options::default()) {
             Ok(_) => wrong.push(format!("{} compiles", path.display())),
             Err(failure) => {

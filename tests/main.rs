@@ -10,6 +10,8 @@
 //! | `damage` | a program changed in any word is refused |
 //! | `grammar` | `grammar/*.ebnf` in step with readers, writers and keys |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
+//! | `exact` | conversions against exact rational arithmetic |
+//! | `fits` | few cubics, against the best there are |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
@@ -19,6 +21,8 @@
 mod cli;
 mod damage;
 mod errors;
+mod exact;
+mod fits;
 mod golden;
 mod grammar;
 mod machine;

@@ -32,7 +32,11 @@ fn compare(root: &Value, schema: &Value, keys: &[Key], path: &str) {
             continue;
         }
         let inner = resolved(root, property);
-        let inner = if key.each { &inner["additionalProperties"] } else { inner };
+        let inner = match (key.each, key.list) {
+            (true, _) => &inner["additionalProperties"],
+            (_, true) => &inner["items"],
+            (false, false) => inner,
+        };
         compare(root, inner, key.inner, &format!("{path}.{}", key.name));
     }
 }
@@ -41,6 +45,8 @@ fn compare(root: &Value, schema: &Value, keys: &[Key], path: &str) {
 fn the_schemas_have_the_keys_of_the_code() {
     let cutter = serde_json::to_value(front::cutter::schema()).expect("JSON");
     compare(&cutter, &cutter, front::cutter::KEYS, "cutter");
+    let job = serde_json::to_value(front::job::schema()).expect("JSON");
+    compare(&job, &job, front::job::KEYS, "job");
     let machine = serde_json::to_value(machine::schema()).expect("JSON");
     compare(&machine, &machine, machine::KEYS, "machine");
 }

@@ -67,14 +67,14 @@ pub(crate) fn sources(text: &str) -> Sources {
     Sources::new(Source::new("input.toml", text))
 }
 
-/// Compiles a cutter file.
+/// Compiles an input of any language.
 pub(crate) fn compiled(
     text: &str,
     machine: &Machine,
     motion: Option<&'static Motion>,
 ) -> Result<Output, Diagnostics> {
     let options = Options { motion, ..Options::default() };
-    let language = front::find("cutter").expect("the cutter language");
+    let language = front::detect(&Source::new("input.toml", text))?;
     compile(&sources(text), language, machine, &options).map_err(|failure| failure.diagnostics)
 }
 

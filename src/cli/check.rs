@@ -22,8 +22,9 @@ impl Check {
                 console.diagnostics(&reading.warnings, sources);
                 console.diagnostics(&legal.warnings, sources);
             }
-            Understood::Input(job) => {
-                if job.process.feed.is_none() || job.process.retract.is_none() {
+            Understood::Input(intent) => {
+                console.diagnostics(&intent.warnings, sources);
+                if !intent.is_complete() {
                     let note = Diagnostic::note(
                         "process-incomplete",
                         "a program would need feed and retract under [process]",

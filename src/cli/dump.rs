@@ -21,7 +21,7 @@ impl Dump {
                 console.diagnostics(&reading.warnings, sources);
                 io::print(&dump::decimals(&reading.value.decimals))
             }
-            Understood::Input(job) => io::print(&dump::intent(&job.intent())),
+            Understood::Input(intent) => io::print(&dump::intent(&intent)),
         }
     }
 }

@@ -43,6 +43,12 @@ impl Interpolate {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         *sources = Sources::new(io::read_source(&self.input)?);
+        let language = super::compile::language(None, sources)?;
+        if language.name != "cutter" {
+            let message =
+                format!("a {} has no table of points: interpolate follows a cutter's flute", language.name);
+            return Err(Diagnostic::error("table-of-cutters-only", message).into());
+        }
         let default = match &self.to {
             Some(to) => machine(to, sources)?.tolerance,
             None => 0.001,

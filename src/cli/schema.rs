@@ -18,6 +18,8 @@ pub(crate) struct Schema {
 enum File {
     /// A conical cutter
     Cutter,
+    /// Curves, with feed and tool
+    Job,
     /// A machine
     Machine,
 }
@@ -27,6 +29,7 @@ impl Schema {
     pub(crate) fn run(&self, _console: &Console) -> Result<(), Diagnostics> {
         let schema = match self.file {
             File::Cutter => front::cutter::schema(),
+            File::Job => front::job::schema(),
             File::Machine => machine::schema(),
         };
         io::print(&(serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"))

@@ -3,7 +3,7 @@
 use super::{io, machine};
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Warned};
 use splinepost::dialect::Reading;
-use splinepost::front::cutter::{self, CutterJob};
+use splinepost::ir::Intent;
 use splinepost::machine::Machine;
 use splinepost::source::{SourceId, Sources};
 
@@ -15,7 +15,7 @@ pub(super) struct Subject {
     /// A machine: the input is then an NC program for it, unless --from says otherwise
     #[arg(long, value_name = "MACHINE")]
     to: Option<String>,
-    /// The input's language: cutter, or nc with --to
+    /// The input's language: cutter, job, or nc with --to
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
 }
@@ -23,7 +23,7 @@ pub(super) struct Subject {
 /// A file that was understood.
 pub(super) enum Understood {
     Program(Box<Machine>, Warned<Reading>),
-    Input(CutterJob),
+    Input(Box<Intent>),
 }
 
 impl Subject {
@@ -36,8 +36,8 @@ impl Subject {
             let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
             return Ok(Understood::Program(Box::new(machine), reading));
         }
-        let Some(input) = sources.get(SourceId::INPUT) else { return Err(Diagnostics::new()) };
-        cutter::parse(input, SourceId::INPUT).map(Understood::Input)
+        let language = super::compile::language(self.from.as_deref(), sources)?;
+        (language.understand)(sources).map(|intent| Understood::Input(Box::new(intent)))
     }
 
     /// The machine of an NC program: that is what the file is where `--from nc` says so, or where a machine is named and

@@ -39,6 +39,8 @@ pub struct Dialect {
     pub about: &'static str,
     /// Its motions; `auto` prefers the earlier at equal numbers of blocks.
     pub motions: &'static [Motion],
+    /// What its B-splines take; none where it has none.
+    pub nurbs: Option<NurbsRules>,
     /// What a program may be called, in words, and whether a name is that.
     pub naming: (&'static str, fn(&str) -> bool),
     /// How parameters of a program are spelled.
@@ -104,6 +106,17 @@ pub struct Motion {
     pub about: &'static str,
     /// The option that the control needs for it; empty for none.
     pub needs: &'static str,
+}
+
+/// What the B-splines of a dialect take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NurbsRules {
+    /// The least and the greatest degree that is written.
+    pub degrees: (usize, usize),
+    /// The greatest weight.
+    pub greatest_weight: f64,
+    /// Whether the first weight is 1 because there is no place to write it.
+    pub starts_with_one: bool,
 }
 
 /// The forms that a curve can take on a control.

@@ -3,8 +3,10 @@
 //! | module | input |
 //! |---|---|
 //! | [`cutter`] | a conical cutter as its drawing states it |
+//! | [`job`] | curves, with feed and tool |
 
 pub mod cutter;
+pub mod job;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::Intent;
@@ -18,6 +20,8 @@ pub struct Language {
     pub about: &'static str,
     /// Reads the input as what a program is to be made of.
     pub parse: fn(&Sources) -> Result<Intent, Diagnostics>,
+    /// Reads the input as far as it goes: without feed and retract there is a path, but no program.
+    pub understand: fn(&Sources) -> Result<Intent, Diagnostics>,
     /// Whether a text looks like it.
     pub recognise: fn(&str) -> bool,
 }
@@ -29,18 +33,31 @@ impl std::fmt::Debug for Language {
 }
 
 /// All languages.
-pub const LANGUAGES: &[Language] = &[Language {
-    name: "cutter",
-    about: "TOML with a [cutter] table: D1, S, C, r, length",
-    parse: |sources| {
-        let input = sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)?;
-        cutter::parse_program(input, SourceId::INPUT)
+pub const LANGUAGES: &[Language] = &[
+    Language {
+        name: "cutter",
+        about: "TOML with a [cutter] table: D1, S, C, r, length",
+        parse: |sources| cutter::parse_program(input(sources)?, SourceId::INPUT),
+        understand: |sources| cutter::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
+        recognise: |text| has_table(text, "[cutter]"),
     },
-    recognise: |text| {
-        let text = text.trim_start_matches('\u{feff}');
-        text.lines().any(|line| line.trim_start().starts_with("[cutter]"))
+    Language {
+        name: "job",
+        about: "TOML with [[curve]] tables: NURBS, Bezier curves, polynomials, points",
+        parse: |sources| job::parse_program(input(sources)?, SourceId::INPUT),
+        understand: |sources| job::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
+        recognise: |text| has_table(text, "[[curve]]") || has_table(text, "[curve]"),
     },
-}];
+];
+
+fn input(sources: &Sources) -> Result<&Source, Diagnostics> {
+    sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)
+}
+
+/// Whether a line of the text begins a table.
+fn has_table(text: &str, table: &str) -> bool {
+    text.trim_start_matches('\u{feff}').lines().any(|line| line.trim_start().starts_with(table))
+}
 
 /// The language of a name.
 pub fn find(name: &str) -> Option<&'static Language> {

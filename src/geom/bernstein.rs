@@ -16,10 +16,25 @@ pub struct Bernstein {
     c: [f64; MAX_DEGREE + 1],
 }
 
-/// C(n, i) as a float; exact for n ≤ 2·[`MAX_DEGREE`].
+/// Pascal's triangle; whole numbers below 2⁵³.
+const BINOMIALS: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
+    let mut rows = [[0.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+    let mut n = 0;
+    while n <= MAX_DEGREE {
+        rows[n][0] = 1.0;
+        let mut i = 1;
+        while i <= n {
+            rows[n][i] = rows[n - 1][i - 1] + rows[n - 1][i];
+            i += 1;
+        }
+        n += 1;
+    }
+    rows
+};
+
+/// C(n, i) as a float, n at most [`MAX_DEGREE`]; exact.
 pub fn binomial(n: usize, i: usize) -> f64 {
-    // Each partial product is itself a binomial coefficient, hence an integer.
-    (0..i.min(n - i)).fold(1.0, |product, j| product * (n - j) as f64 / (j + 1) as f64)
+    BINOMIALS[n][i]
 }
 
 impl Bernstein {
@@ -28,6 +43,11 @@ impl Bernstein {
         let mut c = [0.0; MAX_DEGREE + 1];
         c[..coefficients.len()].copy_from_slice(coefficients);
         Bernstein { degree: coefficients.len() - 1, c }
+    }
+
+    /// n.
+    pub fn degree(&self) -> usize {
+        self.degree
     }
 
     /// The coefficients.

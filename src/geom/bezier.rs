@@ -87,6 +87,100 @@ impl Bezier {
         std::array::from_fn(|axis| self.numerator(axis).eval(t) / w)
     }
 
+    /// P(t), P′(t) and P″(t):
+    ///
+    /// ```text
+    /// P′ = (N′ − w′P)/w          P″ = (N″ − 2w′P′ − w″P)/w
+    /// ```
+    pub fn derivatives(&self, t: f64) -> [Position; 3] {
+        let m = self.degree;
+        let polynomial = self.is_polynomial();
+        let jet = |c: &mut [f64; MAX_PIECE_DEGREE + 1]| -> [f64; 3] {
+            // De Casteljau's scheme down to the last three points, which hold both derivatives.
+            for k in 1..m.max(2) - 1 {
+                for i in 0..=m - k {
+                    c[i] = (1.0 - t) * c[i] + t * c[i + 1];
+                }
+            }
+            if m == 1 {
+                return [(1.0 - t) * c[0] + t * c[1], c[1] - c[0], 0.0];
+            }
+            let (a, b) = ((1.0 - t) * c[0] + t * c[1], (1.0 - t) * c[1] + t * c[2]);
+            let second = (m * (m - 1)) as f64 * (c[0] - 2.0 * c[1] + c[2]);
+            [(1.0 - t) * a + t * b, m as f64 * (b - a), second]
+        };
+        let [w, w1, w2] = if polynomial { [1.0, 0.0, 0.0] } else { jet(&mut self.weights.clone()) };
+        let mut result = [[0.0; MAX_AXES]; 3];
+        for axis in 0..MAX_AXES {
+            let mut c = [0.0; MAX_PIECE_DEGREE + 1];
+            let mut zero = true;
+            for i in 0..=m {
+                c[i] = if polynomial { self.points[i][axis] } else { self.weights[i] * self.points[i][axis] };
+                zero &= c[i] == 0.0;
+            }
+            if zero {
+                continue;
+            }
+            let [n, n1, n2] = jet(&mut c);
+            let p = n / w;
+            let p1 = (n1 - w1 * p) / w;
+            result[0][axis] = p;
+            result[1][axis] = p1;
+            result[2][axis] = (n2 - 2.0 * w1 * p1 - w2 * p) / w;
+        }
+        result
+    }
+
+    /// The part between `from` and `to` on 0 ≤ t ≤ 1 again.
+    #[must_use]
+    pub fn segment(&self, from: f64, to: f64) -> Bezier {
+        let head = if to == 1.0 { *self } else { self.cut(to, false) };
+        if from == 0.0 {
+            return head;
+        }
+        if to == 0.0 { head } else { head.cut((from / to).min(1.0), true) }
+    }
+
+    /// The part before t, or the one behind it, by de Casteljau's scheme in homogeneous coordinates.
+    fn cut(&self, t: f64, behind: bool) -> Bezier {
+        let m = self.degree;
+        let mut h = [[0.0; MAX_AXES + 1]; MAX_PIECE_DEGREE + 1];
+        for i in 0..=m {
+            for axis in 0..MAX_AXES {
+                h[i][axis] = self.weights[i] * self.points[i][axis];
+            }
+            h[i][MAX_AXES] = self.weights[i];
+        }
+        let mut kept = h;
+        for k in 1..=m {
+            for i in 0..=m - k {
+                for c in 0..=MAX_AXES {
+                    h[i][c] = (1.0 - t) * h[i][c] + t * h[i + 1][c];
+                }
+            }
+            if behind {
+                kept[m - k] = h[m - k];
+            } else {
+                kept[k] = h[0];
+            }
+        }
+        let polynomial = self.is_polynomial();
+        let mut part = *self;
+        for i in 0..=m {
+            part.weights[i] = if polynomial { self.weights[0] } else { kept[i][MAX_AXES] };
+            for axis in 0..MAX_AXES {
+                part.points[i][axis] = kept[i][axis] / part.weights[i];
+            }
+        }
+        // Ends that stay are kept to the last bit.
+        if behind {
+            part.points[m] = self.points[m];
+        } else {
+            part.points[0] = self.points[0];
+        }
+        part
+    }
+
     /// The same curve with one more control point.
     ///
     /// ```text

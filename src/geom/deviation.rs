@@ -260,6 +260,34 @@ impl Metric {
         Bound { mm: f64::sqrt(sum), rad }
     }
 
+    /// A piece with every coordinate in mm as it counts.
+    pub fn scaled(&self, piece: &Bezier) -> Bezier {
+        self.each(piece, |x, scale| x * scale)
+    }
+
+    /// The inverse of [`Metric::scaled`].
+    pub fn unscaled(&self, piece: &Bezier) -> Bezier {
+        self.each(piece, |x, scale| x / scale)
+    }
+
+    fn each(&self, piece: &Bezier, map: impl Fn(f64, f64) -> f64) -> Bezier {
+        let mut piece = *piece;
+        for point in &mut piece.points {
+            for (x, scale) in point.iter_mut().zip(&self.scale) {
+                // A linear axis stays as it is to the last bit.
+                if *scale != 1.0 {
+                    *x = map(*x, *scale);
+                }
+            }
+        }
+        piece
+    }
+
+    /// Which axes are rotary.
+    pub fn rotary(&self) -> &[bool] {
+        &self.rotary
+    }
+
     fn scaled_difference(&self, p: &Position, q: &Position) -> Position {
         let mut d = [0.0; crate::units::MAX_AXES];
         for (i, scale) in self.scale.iter().enumerate() {

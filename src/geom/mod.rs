@@ -11,14 +11,22 @@
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
+//! | [`knots`] | clamping, degree elevation, by the blossom |
 //! | [`fit`] | few pieces within a tolerance |
+//! | [`chain`] | a curve of many pieces as one function |
+//! | [`geometric`] | few pieces within a tolerance of any curve |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
+//! | [`follow`] | the same for any two paths of pieces |
 
 pub mod bernstein;
 pub mod bezier;
+pub mod chain;
 pub mod deviation;
 pub mod elementary;
 pub mod fit;
+pub mod follow;
+pub mod geometric;
+pub mod knots;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;

@@ -37,6 +37,9 @@ pub enum NurbsError {
     /// An inner knot stands more than degree times: the curve would fall apart there.
     #[error("knot {0} is repeated more often than the degree")]
     TooOften(usize),
+    /// An inner knot stands degree + 1 times, and the control points there are two places.
+    #[error("the curve breaks at knot {0}")]
+    Breaks(usize),
     /// A weight is not positive.
     #[error("weight {0} is not greater than zero")]
     Weight(usize),
@@ -51,7 +54,8 @@ pub struct Nurbs {
     weights: Vec<f64>,
 }
 
-type Homogeneous = [f64; MAX_AXES + 1];
+/// (w P, w).
+pub(super) type Homogeneous = [f64; MAX_AXES + 1];
 
 impl Nurbs {
     /// A spline of these knots, points and weights (one a point; all 1 for a polynomial spline).
@@ -104,6 +108,19 @@ impl Nurbs {
     /// w_0 … w_n.
     pub fn weights(&self) -> &[f64] {
         &self.weights
+    }
+
+    /// The spline of other points on the same knots and weights: each point mapped by an affine map, and so the curve.
+    #[must_use]
+    pub fn mapped(&self, map: impl Fn(&Position) -> Position) -> Nurbs {
+        Nurbs { points: self.points.iter().map(map).collect(), ..self.clone() }
+    }
+
+    /// Takes over the ends of the curve that this one is another form of, to the last bit.
+    pub(super) fn keep_ends(&mut self, of: &Nurbs) {
+        let last = self.points.len() - 1;
+        self.points[0] = of.points[0];
+        self.points[last] = of.points[of.points.len() - 1];
     }
 
     /// Whether all weights are equal.

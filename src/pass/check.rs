@@ -168,7 +168,7 @@ pub fn closing_coefficients(
     digits: u8,
 ) -> Option<[Decimal; 3]> {
     let [a2, a3, a4, a5] = block.coefficients[axis];
-    if block.pl != Decimal::new(1, 0) || !a4.is_zero() || !a5.is_zero() {
+    if block.denominator.is_some() || block.pl != Decimal::new(1, 0) || !a4.is_zero() || !a5.is_zero() {
         return None;
     }
     let k3 = a3.times(-1)?;
@@ -200,8 +200,9 @@ pub fn moving(curve: &Written) -> Vec<usize> {
             let mut moved =
                 differ(&polynomial.start, &mut polynomial.blocks.iter().map(|block| block.end.as_slice()));
             for block in &polynomial.blocks {
-                for (moved, coefficients) in moved.iter_mut().zip(&block.coefficients) {
+                for (i, (moved, coefficients)) in moved.iter_mut().zip(&block.coefficients).enumerate() {
                     *moved |= coefficients.iter().any(|a| !a.is_zero());
+                    *moved |= block.denominator.is_some_and(|denominator| denominator.divides[i]);
                 }
             }
             moved

@@ -117,8 +117,8 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
         }
         !steps
     });
-    let program = interpolate::interpolate(&rest, form, machine, tolerance, tolerance)?;
-    Ok(counted + count(&convert::convert(program, form, machine)?))
+    let program = interpolate::interpolate(&rest, form, machine, (tolerance, tolerance), true)?;
+    Ok(counted + count(&convert::convert(program, form, machine, false)?))
 }
 
 /// How many blocks the paths of a converted program take.

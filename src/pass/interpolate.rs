@@ -1,19 +1,22 @@
-//! Logarithmic curves become steps, points or pieces, each straight from the intent.
+//! Logarithmic curves become steps, points or pieces, each straight from the intent; other curves what
+//! [`approximate`](super::approximate) makes of them.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Step};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
+use crate::pass::approximate::{Frame, approximate};
 use crate::pass::settle::{steps, through_points};
-use crate::pass::stretch::{Stretch, rate, stretch_of, stretches};
+use crate::pass::stretch::{Stretch, of_curve, rate, stretch_of, stretches};
 use crate::source::Span;
 use crate::units::DEGREES;
 
 /// The program with every logarithmic curve followed within `tolerance` mm, in shapes that `form` can be made of.
-/// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow.
+/// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow. Other curves are
+/// left as they are where the form takes them exactly and `exact` says that it may.
 ///
 /// # Errors
 /// The tolerance is out of reach.
@@ -21,8 +24,8 @@ pub fn interpolate(
     intent: &Intent,
     form: Form,
     machine: &Machine,
-    tolerance: f64,
-    asked: f64,
+    (tolerance, asked): (f64, f64),
+    exact: bool,
 ) -> Result<Program<f64, Curve>, Diagnostics> {
     let mut steps = Vec::with_capacity(intent.program.steps.len());
     // Flutes and passes are one curve, indexed and shifted: it is fitted once.
@@ -59,6 +62,16 @@ pub fn interpolate(
                     step: Step::Cut(Cut { feed, role: *role, curve }),
                     span: located.span,
                 }));
+            }
+            Step::Cut(Cut { feed, role: Role::Path, curve }) => {
+                let axes = &intent.program.axes;
+                let feed = feed.map(|feed| of_curve(curve, feed, axes, machine, intent.radius()).0);
+                let tolerance = if matches!(form, Form::Through(_)) { asked } else { tolerance };
+                let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
+                let curve = approximate(curve, form, &frame, tolerance, exact)
+                    .map_err(|diagnostic| diagnostic.at(located.span, ""))?;
+                let step = Step::Cut(Cut { feed, role: Role::Path, curve });
+                steps.push(Located { step, span: located.span });
             }
             step @ (Step::Comment(_)
             | Step::Tool(_)
@@ -118,6 +131,7 @@ impl Fits<'_> {
     }
 }
 
+/// What is said where a tolerance cannot be reached.
 fn out_of_reach(error: FitError, span: Span) -> Diagnostic {
     Diagnostic::refusal("tolerance-out-of-reach", error.to_string())
         .at(span, "")

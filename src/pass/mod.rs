@@ -8,11 +8,13 @@
 //! | [`place`] | work offsets, where an axis wraps or sections are to be alike |
 //! | [`stretch`] | what F has to be, and where a path is cut so that it can be |
 //! | [`interpolate`] | logarithmic curves become steps, points or pieces |
+//! | [`approximate`] | other curves that the form cannot take exactly are fitted, within `interpolate` |
 //! | [`convert`] | every curve takes the form of the motion, exactly |
 //! | [`quantise`] | every number is rounded, once |
 //! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
 //! | [`range`], [`limits`] | how far and how fast each axis has to move |
 
+pub mod approximate;
 pub mod check;
 pub mod choose;
 pub mod convert;

@@ -19,6 +19,8 @@
 //! positions' last decimal, so that K3 is a whole number of q and nothing is lost. In the basis of the IR, a₂ = 3 K3 + K2
 //! and a₃ = −K3.
 
+mod rational;
+
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
@@ -42,6 +44,7 @@ struct Unwritable;
 
 struct Quantiser<'m> {
     machine: &'m Machine,
+    tolerance: f64,
     digits: [u8; MAX_AXES],
     coefficient_digits: [u8; MAX_AXES],
     position: [Option<i64>; MAX_AXES],
@@ -76,8 +79,15 @@ pub fn quantise(
     });
     let closing = form == (Form::Polynomial { closing: true });
     let origin = [Origin::default(); MAX_AXES];
-    let mut quantiser =
-        Quantiser { machine, digits, coefficient_digits, position: [None; MAX_AXES], origin, closing };
+    let mut quantiser = Quantiser {
+        machine,
+        tolerance,
+        digits,
+        coefficient_digits,
+        position: [None; MAX_AXES],
+        origin,
+        closing,
+    };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
         let step = quantiser.step(step).map_err(|Unwritable| {
@@ -210,6 +220,11 @@ impl Quantiser<'_> {
         let mut blocks = Vec::with_capacity(pieces.len());
         for piece in pieces {
             let end = self.point(&piece.end())?;
+            if !piece.is_polynomial() {
+                blocks.push(rational::block(self, piece, &end)?);
+                from = end;
+                continue;
+            }
             let mut coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
             for axis in 0..self.machine.axes.count() {
                 coefficients[axis] = if closing {
@@ -223,7 +238,8 @@ impl Quantiser<'_> {
                     rounded
                 };
             }
-            blocks.push(PolynomialBlock { pl: Decimal::new(1, 0), end, coefficients, line: 0 });
+            let pl = Decimal::new(1, 0);
+            blocks.push(PolynomialBlock { pl, end, coefficients, denominator: None, line: 0 });
             from = end;
         }
         self.arrive(&from);

@@ -13,10 +13,12 @@
 //! of equal ratio of m/n that hold it.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::bezier::Bezier;
 use crate::geom::elementary::ln_1p;
 use crate::geom::logcurve::{LogCurve, Measure};
-use crate::ir::Logarithmic;
+use crate::ir::{Curve, Logarithmic};
 use crate::machine::{Machine, RotaryFeed};
+use crate::units::{Axes, DEGREES, Kind};
 
 /// The most stretches of one path.
 const MAX_STRETCHES: usize = 1000;
@@ -41,6 +43,75 @@ pub fn counted(machine: &Machine) -> Measure {
         // What lines count is time; other blocks move linear axes only.
         RotaryFeed::InverseTime => Measure::Path,
     }
+}
+
+/// F of any other curve, whose feed is mm/min along its linear axes, and how far the speed is from that inside it, as a share:
+/// such a curve is one stretch. Where no linear axis moves, the feed is that of what does.
+pub fn of_curve(curve: &Curve, feed: f64, axes: &Axes, machine: &Machine, radius: f64) -> (f64, f64) {
+    if machine.rotary_feed == RotaryFeed::Free || machine.rotary_feed == RotaryFeed::InverseTime {
+        return (feed, 0.0);
+    }
+    let pieces = curve.pieces();
+    let linear: f64 = pieces.iter().map(|piece| linear_length(piece, axes)).sum();
+    let each = weight(machine, radius);
+    let counted: f64 = pieces.iter().map(|piece| length(piece, axes, each)).sum();
+    if linear == 0.0 || counted == linear {
+        return (feed, 0.0);
+    }
+    let mean = counted / linear;
+    let mut error = 0.0f64;
+    for piece in &pieces {
+        for i in 0..=PARTS {
+            let t = f64::from(i) / f64::from(PARTS);
+            let e = mean * speed(piece, axes, 0.0, t) / speed(piece, axes, each, t);
+            error = error.max((e - 1.0).abs());
+        }
+    }
+    (feed * mean, error)
+}
+
+/// What a degree counts on a machine, mm.
+fn weight(machine: &Machine, radius: f64) -> f64 {
+    match machine.rotary_feed {
+        RotaryFeed::Free | RotaryFeed::InverseTime => 0.0,
+        RotaryFeed::DegreesAsMm => 1.0,
+        RotaryFeed::Surface => radius / DEGREES,
+    }
+}
+
+/// In how many parts a piece is looked at.
+const PARTS: i32 = 16;
+
+/// The length of a piece as F counts it, by Simpson's rule on sixteen parts.
+pub fn counted_length(piece: &Bezier, axes: &Axes, machine: &Machine, radius: f64) -> f64 {
+    length(piece, axes, weight(machine, radius))
+}
+
+/// The length of a piece in the linear axes, mm.
+pub fn linear_length(piece: &Bezier, axes: &Axes) -> f64 {
+    length(piece, axes, 0.0)
+}
+
+fn length(piece: &Bezier, axes: &Axes, degree: f64) -> f64 {
+    let parts = if piece.degree == 1 { 1 } else { PARTS };
+    let h = 1.0 / f64::from(parts);
+    let rate = |t: f64| speed(piece, axes, degree, t);
+    let part = |i: i32| {
+        let t = f64::from(i) * h;
+        h / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * h) + rate(t + h))
+    };
+    (0..parts).map(part).sum()
+}
+
+/// |x′(t)| with a degree counted as so many millimetres.
+fn speed(piece: &Bezier, axes: &Axes, degree: f64, t: f64) -> f64 {
+    let [_, d, _] = piece.derivatives(t);
+    let square = |i: usize| match axes.kind(i) {
+        Kind::Linear => d[i] * d[i],
+        Kind::Rotary => degree * d[i] * degree * d[i],
+        Kind::Direction => 0.0,
+    };
+    (0..axes.count()).map(square).sum::<f64>().sqrt()
 }
 
 /// How often a minute the way between two X could be made at a feed: F under inverse time. One interval of Simpson's rule,

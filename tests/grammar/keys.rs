@@ -14,6 +14,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// `process.retract.to`, `axis.*.kind`: the keys of a table of code that hold values.
 fn of_code(keys: &[Key], within: &str, out: &mut BTreeSet<String>) {
     for key in keys {
+        if key.list {
+            of_code(key.inner, &format!("{within}[{}].", key.name), out);
+            continue;
+        }
         let path = format!("{within}{}", key.name);
         match (key.inner, key.each) {
             ([], _) => _ = out.insert(path),
@@ -90,6 +94,12 @@ const LANGUAGES: &[Language] = &[
         "",
     ),
     (
+        "job",
+        splinepost::front::job::KEYS,
+        |text| splinepost::front::job::parse(&Source::new("input.toml", text), SourceId::INPUT).err(),
+        "",
+    ),
+    (
         "machine",
         splinepost::machine::KEYS,
         |text| Machine::parse(text, SourceId::INPUT).err(),
@@ -144,6 +154,7 @@ const KINDS: &[(&str, &str)] = &[
     ("list of fractions", "[3.5]"),
     ("list of texts", "[\"X\"]"),
     ("table", "{}"),
+    ("list of lists", "[[3.5]]"),
 ];
 
 /// The kind of a value, from how it begins; none of a list without items.
@@ -152,6 +163,7 @@ fn kind(value: &str) -> Option<&'static str> {
     let at = match value.as_bytes() {
         [b'[', b']'] => return None,
         [b'[', b'"', ..] => 6,
+        [b'[', b'[', ..] => 8,
         [b'[', ..] => 4 + number(value),
         [b'"', ..] => 2,
         [b't' | b'f', ..] => 3,

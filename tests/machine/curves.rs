@@ -84,9 +84,9 @@ fn upath(job: &Job, step: &Move, violations: &mut Vec<Violation>) {
     }
 }
 
-/// SPLINEPATH names every axis of the block.
+/// SPLINEPATH names every axis of the block; without one the spline group is X Y Z, the first three axes of the channel.
 fn spline_path(step: &Move, violations: &mut Vec<Violation>) {
-    let named = step.modal.spline_path.as_deref().unwrap_or_default();
+    let named = step.modal.spline_path.as_deref().unwrap_or(&['X', 'Y', 'Z']);
     let left: String = step.targets.keys().filter(|axis| !named.contains(axis)).collect();
     if !left.is_empty() {
         violations.push(step.violation(Rule::SplinePath, format!("SPLINEPATH does not name {left}")));

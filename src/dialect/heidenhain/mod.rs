@@ -75,6 +75,7 @@ pub const DIALECT: Dialect = Dialect {
         },
         Motion { name: "linear", form: Form::Lines, about: "L", needs: "" },
     ],
+    nurbs: None,
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
     inverse_time: false,

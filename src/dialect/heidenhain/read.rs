@@ -479,7 +479,13 @@ impl<'t> Reader<'t, '_> {
             self.run = Some(Run { polynomial: WrittenPolynomial { start, blocks: Vec::new() }, span });
         }
         if let Some(run) = &mut self.run {
-            run.polynomial.blocks.push(PolynomialBlock { pl: Decimal::new(1, 0), end, coefficients, line });
+            run.polynomial.blocks.push(PolynomialBlock {
+                pl: Decimal::new(1, 0),
+                end,
+                coefficients,
+                denominator: None,
+                line,
+            });
             run.span.end = span.end;
         }
     }

@@ -57,7 +57,7 @@
 mod read;
 mod write;
 
-use super::{Dialect, Form, Motion, Parameter, Round};
+use super::{Dialect, Form, Motion, NurbsRules, Parameter, Round};
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -82,6 +82,7 @@ pub const MAZAK: Dialect = Dialect {
             needs: "fine spline interpolation",
         },
     ],
+    nurbs: Some(NurbsRules { degrees: (1, 3), greatest_weight: 99.9999, starts_with_one: false }),
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
     parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
     inverse_time: true,

@@ -14,6 +14,14 @@
 //!
 //! so rounding can open no gap; it turns the start tangent a little. An axis given as a plain word is linear in p.
 //!
+//! A denominator `PO[]=(De,d₂,d₃)` divides X, Y and Z, D(p) = 1 + d₁p + d₂p² + … with D(PL) = De. The end stays the true
+//! position, so that N(PL) = xe De. The manual's quarter circle, X = (10 − 10p²)/(1 + p²), Y = 20p/(1 + p²):
+//!
+//! ```text
+//! N10 POLY X10 Y0 F100
+//! N20 PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)
+//! ```
+//!
 //! **BSPLINE.** One might expect a knot vector. There is a distance `PL` on each block instead, and the first control
 //! point is where the block before ended. With knots t_0 … t_{n+3} of a clamped cubic of points P_0 … P_{n−1},
 //! block j (j = 1 … n−1) carries
@@ -53,7 +61,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{Dialect, Form, Motion, Parameter, Round};
+use super::{Dialect, Form, Motion, NurbsRules, Parameter, Round};
 use crate::ir::ThroughKind;
 
 /// The dialect.
@@ -87,6 +95,8 @@ pub const DIALECT: Dialect = Dialect {
             needs: "spline interpolation",
         },
     ],
+    // SD=2 is read in two ways, so that it is never written; PW is 0 to 3, and the first point has no block.
+    nurbs: Some(NurbsRules { degrees: (3, 3), greatest_weight: 3.0, starts_with_one: true }),
     naming: (
         "1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter",
         is_name,

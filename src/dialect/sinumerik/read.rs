@@ -2,6 +2,7 @@
 //!
 //! A word that is not understood is an error at its place.
 
+mod path;
 mod state;
 
 use super::words::{Word, word};
@@ -12,14 +13,15 @@ use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
 use crate::ir::{
-    COEFFICIENTS, Decimals, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
-    WrittenPolynomial,
+    COEFFICIENTS, Denominator, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs,
+    WrittenPoints, WrittenPolynomial,
 };
 use crate::machine::Machine;
 use crate::pass::check::moving;
 use crate::source::{SourceId, Span};
 use crate::units::{Kind, MAX_AXES};
 use crate::verify::to_nurbs;
+use path::{denominator_fault, linear_in_parameter};
 use std::ops::Range;
 
 /// G group 1.
@@ -43,6 +45,10 @@ struct Block {
     count: usize,
     coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
     has_polynomial: bool,
+    /// The axes that PO[…] names.
+    divides: [bool; MAX_AXES],
+    /// The end and the coefficients of PO[].
+    denominator: Option<(Decimal, [Decimal; COEFFICIENTS])>,
     pl: Option<Decimal>,
     pw: Option<Decimal>,
     feed: Option<Decimal>,
@@ -164,6 +170,8 @@ impl Reader<'_> {
             count: 0,
             coefficients: [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES],
             has_polynomial: false,
+            divides: [false; MAX_AXES],
+            denominator: None,
             pl: None,
             pw: None,
             feed: None,
@@ -216,13 +224,6 @@ impl Reader<'_> {
             }
             Word::Shortest(name, value) => self.shortest(name, value, range, block),
             Word::Polynomial(name, values) => {
-                let Some(axis) = self.assembler.axis(name) else {
-                    return self.assembler.error(
-                        "axis-unknown",
-                        format!("{name} is not an axis of this machine"),
-                        range,
-                    );
-                };
                 if COEFFICIENTS + 1 < values.len() {
                     return self.assembler.error(
                         "degree-too-high",
@@ -230,12 +231,29 @@ impl Reader<'_> {
                         range,
                     );
                 }
+                if name.is_empty() {
+                    let mut coefficients = [Decimal::ZERO; COEFFICIENTS];
+                    coefficients[..values.len() - 1].copy_from_slice(&values[1..]);
+                    if block.denominator.replace((values[0], coefficients)).is_some() {
+                        self.assembler.error("axis-twice", "PO[] stands twice in this block", range);
+                    }
+                    block.has_polynomial = true;
+                    return;
+                }
+                let Some(axis) = self.assembler.axis(name) else {
+                    return self.assembler.error(
+                        "axis-unknown",
+                        format!("{name} is not an axis of this machine"),
+                        range,
+                    );
+                };
                 if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
                     self.name_axis(block, axis, units, range);
                     for (own, a) in block.coefficients[axis].iter_mut().zip(&values[1..]) {
                         *own = self.assembler.coefficient(axis, *a);
                     }
                     block.has_polynomial = true;
+                    block.divides[axis] = true;
                 }
             }
             Word::Call("SPLINEPATH", arguments) => {
@@ -382,7 +400,18 @@ impl Reader<'_> {
                     span.start as usize..span.end as usize,
                 );
             }
-            run.blocks.push(PolynomialBlock { pl, end: target, coefficients: block.coefficients, line });
+            let denominator = block.denominator.map(|(end, coefficients)| Denominator {
+                end,
+                coefficients,
+                divides: block.divides,
+            });
+            let coefficients = block.coefficients;
+            let start = run.blocks.last().map_or(run.start, |last| last.end);
+            let own = PolynomialBlock { pl, end: target, coefficients, denominator, line };
+            if let Some((id, message)) = denominator_fault(&self.assembler, &own, &start, block.named()) {
+                return self.assembler.error(id, message, span.start as usize..span.end as usize);
+            }
+            run.blocks.push(own);
         } else {
             run.points.push(target);
             run.missing_pl |= block.pl.is_none();
@@ -527,31 +556,6 @@ impl Reader<'_> {
             let message = "without UPATH the rotary axes follow the arc length here, which is another curve";
             self.assembler.diagnostics.push(Diagnostic::error("arc-length", message).at(span, ""));
         }
-    }
-}
-
-/// Whether the axes given are linear in the parameter on every span, to two units of the last decimal. Then their path
-/// is straight there and its length is the parameter. What the control makes of points is its own affair.
-fn linear_in_parameter(decimals: &Decimals, curve: &Written, axes: &[usize]) -> bool {
-    match curve {
-        Written::Lines(_) | Written::Through(..) => true,
-        Written::Polynomial(polynomial) => polynomial
-            .blocks
-            .iter()
-            .all(|block| axes.iter().all(|i| block.coefficients[*i].iter().all(|a| a.is_zero()))),
-        Written::Nurbs(nurbs) => to_nurbs(decimals, nurbs).is_ok_and(|spline| {
-            spline.beziers().all(|(piece, _)| {
-                let (first, last, m) = (piece.start(), piece.end(), piece.degree);
-                axes.iter().all(|&axis| {
-                    let slack = 2.0 / power_of_ten(decimals.digits[axis]) as f64;
-                    (1..m).all(|i| {
-                        let share = i as f64 / m as f64;
-                        (piece.points[i][axis] - first[axis] - share * (last[axis] - first[axis])).abs()
-                            <= slack
-                    })
-                })
-            })
-        }),
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) enum Word<'t> {
     FeedParameter(u32),
     /// `A=DC(5)`
     Shortest(&'t str, Decimal),
-    /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`
+    /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`; the denominator `PO[]=(2,1)` has no name
     Polynomial(&'t str, Vec<Decimal>),
     /// `SPLINEPATH(1,X,Y)`
     Call(&'t str, &'t str),
@@ -110,9 +110,11 @@ fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
     delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
 }
 
-/// `polynomial = "PO[", axis, "]", equals, list | axis, equals, "PO", list`, or another name
+/// `polynomial = "PO[", [ axis ], "]", equals, list | axis, equals, "PO", list`, or another name; without an axis it is the
+/// denominator
 fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
-    let old = (delimited(tag("PO["), name, char(']')), preceded((space0, char('='), space0), list));
+    let old =
+        (delimited(tag("PO["), alt((name, tag(""))), char(']')), preceded((space0, char('='), space0), list));
     let new = (terminated(name, (space0, char('='), space0, tag("PO"))), list);
     alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
 }

@@ -18,6 +18,12 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     String::from_utf8(writer.modal.out).unwrap_or_default()
 }
 
+/// Coefficients up to the last that is not zero.
+fn used(coefficients: &[Decimal]) -> &[Decimal] {
+    let count = coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
+    &coefficients[..count]
+}
+
 struct Writer<'a> {
     modal: Modal<'a>,
     decimals: &'a Decimals,
@@ -111,6 +117,15 @@ impl Writer<'_> {
         }
     }
 
+    /// a₂ and so on, behind the end.
+    fn coefficients(&mut self, coefficients: &[Decimal]) {
+        for a in coefficients {
+            self.modal.out.push(b',');
+            a.write(&mut self.modal.out, self.modal.spelling);
+        }
+        self.modal.text(") ");
+    }
+
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, curve: &Written, feed: Option<Decimal>) {
         self.path_reference(curve, false);
         let moved = moving(curve);
@@ -118,11 +133,14 @@ impl Writer<'_> {
             self.modal.begin("N");
             self.modal.motion("POLY");
             for &i in &moved {
-                let coefficients = &block.coefficients[i];
-                let count =
-                    coefficients.len() - coefficients.iter().rev().take_while(|a| a.is_zero()).count();
-                if count == 0 {
-                    self.modal.axis(i, block.end[i]);
+                let coefficients = used(&block.coefficients[i]);
+                let divided = block.denominator.is_some_and(|denominator| denominator.divides[i]);
+                if coefficients.is_empty() && !divided {
+                    // An axis that rests is left out, whatever it does in other blocks of the run, which may be read as one
+                    // run with the next curve's.
+                    if self.modal.position[i] != Some(block.end[i]) {
+                        self.modal.axis(i, block.end[i]);
+                    }
                     continue;
                 }
                 let name = self.modal.machine.axes.name(i);
@@ -132,11 +150,14 @@ impl Writer<'_> {
                 let spelling = self.modal.spelling;
                 let end = self.modal.counted(i, block.end[i]);
                 write_units(&mut self.modal.out, end, self.decimals.digits[i], spelling);
-                for a in &coefficients[..count] {
-                    self.modal.out.push(b',');
-                    self.modal.coefficient(i, *a).write(&mut self.modal.out, spelling);
-                }
-                self.modal.text(") ");
+                let counted: Vec<Decimal> =
+                    coefficients.iter().map(|a| self.modal.coefficient(i, *a)).collect();
+                self.coefficients(&counted);
+            }
+            if let Some(denominator) = &block.denominator {
+                self.modal.text("PO[]=(");
+                denominator.end.write(&mut self.modal.out, self.modal.spelling);
+                self.coefficients(used(&denominator.coefficients));
             }
             self.modal.text("PL=");
             block.pl.write(&mut self.modal.out, Spelling::PLAIN);

@@ -164,6 +164,8 @@ impl CutterJob {
             program: Program { name: self.name.clone(), number: self.number, axes: Axes::xyza(), steps },
             tolerance: self.tolerance,
             name_span: self.name_span,
+            radius: None,
+            warnings: Diagnostics::new(),
         }
     }
 

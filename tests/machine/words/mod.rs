@@ -167,7 +167,8 @@ impl Block {
 
     /// Keeps a remark, where it begins a section.
     fn remark(&mut self, text: &str) {
-        self.section = Some(text.trim().to_owned()).filter(|text| text.starts_with("FLUTE"));
+        self.section = Some(text.trim().to_owned())
+            .filter(|text| text.starts_with("FLUTE") || text.starts_with("CURVE"));
     }
 
     /// Puts a number where there is none yet.

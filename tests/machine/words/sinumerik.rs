@@ -146,6 +146,14 @@ fn valued(block: &mut Block, word: &str) {
             },
             (_, None) => {
                 let name = address.strip_prefix("PO[").and_then(|rest| rest.strip_suffix(']'));
+                if let (Some(""), Some(list)) = (name, inner("(")) {
+                    // The denominator of the geometry axes: its end, then d2, d3, … The end is above zero.
+                    let values: Vec<Option<f64>> = list.split(',').map(number).collect();
+                    if !values.iter().all(Option::is_some) || values[0].is_none_or(|end| end <= 0.0) {
+                        block.fault(word);
+                    }
+                    return;
+                }
                 let (Some(axis), Some(list)) = (name.and_then(axis), inner("(")) else {
                     return block.fault(word);
                 };

@@ -269,7 +269,7 @@ impl Reader<'_> {
             let id = match error {
                 NurbsError::Counts { .. } => "points-too-few",
                 NurbsError::NotClamped(_) => "end-multiplicity",
-                NurbsError::TooOften(_) => "knot-too-often",
+                NurbsError::TooOften(_) | NurbsError::Breaks(_) => "knot-too-often",
                 NurbsError::Decreases(_) => "knots-decrease",
                 NurbsError::Weight(_) => "weight-range",
                 NurbsError::Degree(_) => "order-range",

@@ -59,6 +59,33 @@ fn heights(text: &str) -> Vec<f64> {
 }
 
 #[test]
+fn a_denominator_makes_the_manuals_arcs() {
+    // Both of the manual: a quarter circle of radius 10, and an arc of 120 degrees of radius 1/√12 from (0, 0).
+    let quarter = "POLY X10 Y0 F100\nPO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)\n";
+    let third = "POLY X0 Y0 F100\nPO[X]=(0.25,0.5,0) PO[Y]=(0.433,0,0) PO[]=(1,1,0)\n";
+    // The second circle has its centre at (¼, √3/12); 0.433 is √3/4 rounded by 1.3e-5.
+    for (text, centre, radius, slack) in [
+        (quarter, [0.0, 0.0], 10.0, 1.0e-14),
+        (third, [0.25, 0.144_337_567_297_406], 0.288_675_134_594_813, 2.0e-5),
+    ] {
+        let reading = fragment(text).unwrap().value.decimals;
+        let Step::Cut(Cut { curve: Written::Polynomial(polynomial), .. }) = &reading.program.steps[0].step
+        else {
+            panic!("{reading:?}")
+        };
+        let piece = polynomial.blocks[1].to_bezier(&reading.digits, &polynomial.blocks[0].end);
+        for i in 0..=8 {
+            let p = piece.eval(f64::from(i) / 8.0);
+            let (x, y) = (p[0] - centre[0], p[1] - centre[1]);
+            approx::assert_relative_eq!((x * x + y * y).sqrt(), radius, epsilon = slack);
+        }
+    }
+    assert_eq!(id("POLY X0 Y0\nPO[X]=(1,2) Y3 PO[]=(2,1)\n"), "denominator-axis");
+    assert_eq!(id("POLY X0 Y0\nPO[X]=(1,2) PO[]=(-1,1)\n"), "denominator-range");
+    assert_eq!(id("POLY X0 Y0\nPO[X]=(1,2) PO[]=(2) PO[]=(2)\n"), "axis-twice");
+}
+
+#[test]
 fn the_reference_curve_in_both_forms() {
     let expected = [0.0, 6.25, 14.0, 10.75, 0.0, -10.75, -14.0, -6.25, 0.0];
     for text in [BSPLINE, POLY] {

@@ -1,0 +1,182 @@
+//! The program round the curves: how the tool gets to each and away.
+//!
+//! Curves that meet are one section, so that a program can be restarted there:
+//!
+//! | step | move |
+//! |---|---|
+//! | retract | the retract axis to clear air, at rapid, alone |
+//! | position | the other axes to the start of the first curve, one at a time |
+//! | approach | the retract axis to the start, at feed |
+//! | path | the curves, in order |
+//! | retract | the retract axis to clear air, at rapid |
+//!
+//! Before the tool change and after the last section the retract axis goes home in machine coordinates.
+
+use super::{Job, MEET, Placed, parse};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::bezier::Bezier;
+use crate::ir::{Curve, Cut, Intent, Located, Polyline, Program, Role, Step};
+use crate::source::{Source, SourceId};
+use crate::units::Position;
+
+/// Gaps below this look as if the curves were meant to meet, mm or degrees.
+const SMALL_GAP: f64 = 0.05;
+
+/// Reads a job file as what a program is to be made of.
+///
+/// # Errors
+/// As [`parse`]; also where feed or retract is missing, or where the retract position is not clear of the curves.
+pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostics> {
+    let job = parse(source, id)?;
+    let mut found = Diagnostics::new();
+    let mut missing = |id, what: &str, line: &str| {
+        found.push(
+            Diagnostic::error(id, format!("a program needs {what}"))
+                .at(job.process.span, "")
+                .hint(format!("add under [process]: {line}")),
+        );
+    };
+    if job.process.feed.is_none() {
+        missing("feed-missing", "a feed", "feed = 1000.0");
+    }
+    if job.process.retract.is_none() {
+        let line = "retract = { axis = \"Z\", to = 50.0 }";
+        missing("retract-missing", "a place in clear air to retract to", line);
+    }
+    if let Some(diagnostic) = job.retract_not_clear() {
+        found.push(diagnostic);
+    }
+    found.into_result()?;
+    Ok(job.intent())
+}
+
+/// The greatest distance of two positions in one coordinate.
+fn gap(p: &Position, q: &Position) -> f64 {
+    p.iter().zip(q).fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+}
+
+impl Job {
+    /// Where the sections begin: the first curve, and each that does not start where the one before ended.
+    fn sections(&self) -> Vec<&[Placed]> {
+        self.curves.chunk_by(|before, after| gap(&before.end, &after.start) <= MEET).collect()
+    }
+
+    /// What is wrong with the retract position: it lies on the way of the curves.
+    fn retract_not_clear(&self) -> Option<Diagnostic> {
+        let (axis, to) = self.process.retract?;
+        let i = self.axes.index_of(axis)?;
+        let mut reach = (f64::INFINITY, f64::NEG_INFINITY);
+        for placed in &self.curves {
+            let mut own = (f64::INFINITY, f64::NEG_INFINITY);
+            let mut take = |point: &Position| own = (own.0.min(point[i]), own.1.max(point[i]));
+            take(&placed.start);
+            match &placed.curve {
+                Curve::Lines(line) | Curve::Through(_, line) => line.points().for_each(|point| take(&point)),
+                Curve::Polynomial(pieces) => {
+                    pieces.iter().flat_map(Bezier::control_points).for_each(take);
+                }
+                Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(take),
+                Curve::Logarithmic(_) => {}
+            }
+            // A curve that rests there was warned of.
+            if own != (to, to) {
+                reach = (reach.0.min(own.0), reach.1.max(own.1));
+            }
+        }
+        (reach.0 <= to && to <= reach.1).then(|| {
+            let message = format!("{axis} {to} lies on the way that {axis} takes along the curves");
+            Diagnostic::error("retract-not-clear", message)
+                .at(self.process.span, "")
+                .hint("retract to a position that the curves do not reach")
+        })
+    }
+
+    /// The program, without the moves that feed and retract would allow where those are missing.
+    pub fn intent(&self) -> Intent {
+        let mut steps = Vec::new();
+        let first = self.curves.first().map_or(self.process.span, |placed| placed.span);
+        let mut add = |step: Step<f64, Curve>, span| steps.push(Located { step, span });
+        let home = self.process.retract.and_then(|(axis, _)| self.axes.index_of(axis));
+        if let Some(axis) = home {
+            add(Step::Home(axis), first);
+            add(Step::Tool(self.process.tool), first);
+        }
+        if let Some(rpm) = self.process.spindle {
+            add(Step::Spindle(rpm), first);
+        }
+        if self.process.coolant {
+            add(Step::Coolant, first);
+        }
+        let mut warnings = self.warnings.clone();
+        let mut number = 1;
+        let mut last: Option<&Placed> = None;
+        for section in self.sections() {
+            let (count, all) = (section.len(), self.curves.len());
+            let start = &section[0];
+            if let Some(last) = last
+                && gap(&last.end, &start.start) < SMALL_GAP
+            {
+                let message = format!(
+                    "curves {} and {number} are {:.2e} apart, and so the tool retracts between them",
+                    number - 1,
+                    gap(&last.end, &start.start)
+                );
+                warnings.push(
+                    Diagnostic::warning("gap-small", message)
+                        .at(start.span, "")
+                        .hint(format!("curves are joined where they are no farther apart than {MEET:e}")),
+                );
+            }
+            let name = if count == 1 {
+                format!("CURVE {number} OF {all}")
+            } else {
+                format!("CURVES {number} TO {} OF {all}", number + count - 1)
+            };
+            self.section(section, name, &mut add);
+            number += count;
+            last = section.last();
+        }
+        if let Some(axis) = home {
+            add(Step::Home(axis), first);
+        }
+        Intent {
+            program: Program { name: self.name.clone(), number: self.number, axes: self.axes, steps },
+            tolerance: self.tolerance,
+            name_span: self.name_span,
+            radius: self.radius,
+            warnings,
+        }
+    }
+
+    /// Curves that meet.
+    fn section(
+        &self,
+        section: &[Placed],
+        name: String,
+        add: &mut impl FnMut(Step<f64, Curve>, crate::source::Span),
+    ) {
+        let Placed { start, span, .. } = section[0];
+        let feed = self.process.feed;
+        let retract = self.process.retract.and_then(|(axis, to)| Some((self.axes.index_of(axis)?, to)));
+        add(Step::Comment(name), span);
+        if let Some((axis, to)) = retract {
+            add(Step::Rapid(vec![(axis, to)]), span);
+            for other in (0..self.axes.count()).filter(|other| *other != axis) {
+                add(Step::Rapid(vec![(other, start[other])]), span);
+            }
+            if start[axis] != to {
+                let mut clear: Position = start;
+                clear[axis] = to;
+                let mut approach = Polyline::new(clear, self.axes.count());
+                approach.push(&start);
+                add(Step::Cut(Cut { feed, role: Role::Approach, curve: Curve::Lines(approach) }), span);
+            }
+        }
+        for placed in section {
+            add(Step::Cut(Cut { feed, role: Role::Path, curve: placed.curve.clone() }), placed.span);
+        }
+        if let Some((axis, to)) = retract {
+            add(Step::Rapid(vec![(axis, to)]), span);
+        }
+    }
+}

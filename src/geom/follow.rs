@@ -1,0 +1,520 @@
+//! Upper bounds on the deviation of one path from another, both made of Bezier pieces, rational or not.
+//!
+//! The map φ between their parameters is built first, then proved: on each interval the path is one piece p(t), the
+//! curve one piece c(u), and u = φ(t) a polynomial of degree 1 to 3 that rises, so that
+//!
+//! ```text
+//! p(t) − c(φ(t)) = [N(t) E(φ(t)) − M(φ(t)) D(t)] / [D(t) E(φ(t))]          p = N/D,  c = M/E
+//! ```
+//!
+//! is a quotient of polynomials. The numerator's Bernstein coefficients, taken as vectors, bound its length; those of D and
+//! of E∘φ bound the denominator from below. φ does not have to be the best map: any φ that rises from start to end
+//! gives an upper bound.
+//!
+//! # Which φ
+//!
+//! First the same parameter, piece by piece, where both have equally many: what an exact conversion makes. Otherwise both are
+//! run along together. At each joint of either the nearest place of the other one is looked for, near where the lengths
+//! say that it should be; between such places φ is the cubic with the slopes (p′·c′)/(c′·c′) at its ends, flattened
+//! where it would fall. Intervals are halved until the bound is within 2 % (and 2 thousandths of the tolerance) of the
+//! greatest distance seen.
+//!
+//! # Rounding
+//!
+//! Every bound is raised by 256 ε (ε = 2.2e-16) of the greatest coordinate: a piece is cut by at most some thirty de
+//! Casteljau steps, each within ε/2 of no greater a number, and the products round some 60 times more.
+
+use super::bernstein::{Bernstein, MAX_DEGREE};
+use super::bezier::Bezier;
+use super::deviation::OrderError;
+use crate::units::{MAX_AXES, Position};
+
+/// Allowance for rounding, relative to the greatest coordinate.
+const ROUNDING: f64 = 256.0 * f64::EPSILON;
+
+/// Halving stops here, and the bound is taken as it is.
+const MAX_DEPTH: u32 = 12;
+
+/// How many places of a piece its length is measured at.
+const PLACES: usize = 16;
+
+/// What was found of two paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// An upper bound on the distance.
+    pub distance: f64,
+    /// An upper bound on the difference in each coordinate.
+    pub axes: [f64; MAX_AXES],
+    /// Which map it holds for.
+    pub map: Map,
+}
+
+/// The monotone map φ of a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Map {
+    /// The same parameter on each piece.
+    Parameter,
+    /// Nearest places, joined by rising cubics.
+    Nearest,
+}
+
+impl Map {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Map::Parameter => "at equal parameters",
+            Map::Nearest => "along the path, by a rising map of its own",
+        }
+    }
+}
+
+fn dot(a: &Position, b: &Position) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn minus(a: &Position, b: &Position) -> Position {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn distance(a: &Position, b: &Position) -> f64 {
+    let d = minus(a, b);
+    dot(&d, &d).sqrt()
+}
+
+/// The bound for `path` against `curve`, both run from start to end; `tolerance` says how close a look is worth while.
+///
+/// # Errors
+/// A number is not finite, or a path has no piece.
+pub fn follow(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Result<Followed, OrderError> {
+    let finite = |piece: &Bezier| {
+        let weights = &piece.weights[..=piece.degree];
+        weights.iter().all(|w| 0.0 < *w && w.is_finite())
+            && piece.control_points().iter().flatten().all(|x| x.is_finite())
+    };
+    if path.is_empty() || curve.is_empty() || !path.iter().chain(curve).all(finite) {
+        return Err(OrderError::NotFinite);
+    }
+    if path.len() == curve.len() {
+        let mut bounds = Bounds::new(path, curve, tolerance);
+        if path.iter().zip(curve).all(|(p, c)| at_equal_parameters(p, c, &mut bounds)) {
+            return Ok(bounds.found(Map::Parameter));
+        }
+    }
+    let mut bounds = Bounds::new(path, curve, tolerance);
+    along(&tamed(path), &tamed(curve), &mut bounds);
+    Ok(bounds.found(Map::Nearest))
+}
+
+/// Bounds a piece against a piece with φ the identity; false where that is not within the tolerance.
+fn at_equal_parameters(p: &Bezier, c: &Bezier, bounds: &mut Bounds) -> bool {
+    let same = Bernstein::new(&[0.0, 1.0]);
+    let mut stack = vec![(*p, *c, 0)];
+    while let Some((p, c, depth)) = stack.pop() {
+        bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
+        if !(bounds.seen <= bounds.tolerance) {
+            return false;
+        }
+        let (most, axes) = difference(bounds, &p, &c, &same);
+        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
+            bounds.take(most, &axes);
+            if !(bounds.distance <= bounds.tolerance) {
+                return false;
+            }
+            continue;
+        }
+        bounds.left -= 1;
+        stack.push((p.segment(0.5, 1.0), c.segment(0.5, 1.0), depth + 1));
+        stack.push((p.segment(0.0, 0.5), c.segment(0.0, 0.5), depth + 1));
+    }
+    true
+}
+
+/// The greatest ratio of two weights of a piece that is run along as it is.
+const TAME: f64 = 3.0;
+
+/// The same path, its pieces halved where weights differ much: there most of the way is run in a small part of the
+/// parameter, and nearest places are hard to find.
+pub(super) fn tamed(pieces: &[Bezier]) -> Vec<Bezier> {
+    let wild = |piece: &Bezier| {
+        let weights = &piece.weights[..=piece.degree];
+        let greatest = weights.iter().copied().fold(0.0, f64::max);
+        weights.iter().any(|w| w * TAME < greatest)
+    };
+    let mut tame = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let mut stack = vec![(*piece, 0)];
+        while let Some((piece, depth)) = stack.pop() {
+            if depth == MAX_DEPTH || !wild(&piece) {
+                tame.push(piece);
+                continue;
+            }
+            stack.push((piece.segment(0.5, 1.0), depth + 1));
+            stack.push((piece.segment(0.0, 0.5), depth + 1));
+        }
+    }
+    tame
+}
+
+/// The greatest bounds so far.
+struct Bounds {
+    distance: f64,
+    axes: [f64; MAX_AXES],
+    /// The greatest distance that was seen at a place.
+    seen: f64,
+    tolerance: f64,
+    noise: f64,
+    /// Coordinates that any point has.
+    used: Vec<usize>,
+    /// How many intervals may still be halved.
+    left: usize,
+}
+
+impl Bounds {
+    fn new(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Bounds {
+        let all = || path.iter().chain(curve).flat_map(Bezier::control_points);
+        let greatest = |axis: usize| all().fold(0.0, |most, p| f64::max(most, p[axis].abs()));
+        let used: Vec<usize> = (0..MAX_AXES).filter(|axis| greatest(*axis) != 0.0).collect();
+        let noise = ROUNDING * used.iter().map(|axis| greatest(*axis)).fold(0.0, f64::max);
+        let left = 4096 + 64 * (path.len() + curve.len());
+        Bounds { distance: 0.0, axes: [0.0; MAX_AXES], seen: 0.0, tolerance, noise, used, left }
+    }
+
+    fn take(&mut self, distance: f64, axes: &[f64; MAX_AXES]) {
+        self.distance = self.distance.max(distance);
+        for (most, axis) in self.axes.iter_mut().zip(axes) {
+            *most = most.max(*axis);
+        }
+    }
+
+    /// Whether a bound is as close to what was seen as is worth while.
+    fn is_tight(&self, most: f64) -> bool {
+        most <= 1.02 * self.seen + 2.0e-3 * self.tolerance + 2.0 * self.noise
+    }
+
+    fn found(&self, map: Map) -> Followed {
+        Followed { distance: self.distance, axes: self.axes, map }
+    }
+}
+
+/// The bound for p(t) − c(φ(t)) on 0 ≤ t ≤ 1, in all and in each coordinate.
+fn difference(bounds: &Bounds, p: &Bezier, c: &Bezier, phi: &Bernstein) -> (f64, [f64; MAX_AXES]) {
+    // Coordinates are taken from the start of p, so that little is lost in the products.
+    let origin = p.start();
+    let shifted = |piece: &Bezier, axis: usize| {
+        let mut own = *piece;
+        for point in &mut own.points[..=piece.degree] {
+            point[axis] -= origin[axis];
+        }
+        own.numerator(axis)
+    };
+    let rational = !(p.is_polynomial() && c.is_polynomial());
+    let below = rational.then(|| (p.denominator(), compose(&c.denominator(), phi)));
+    let least = match &below {
+        Some((d, e)) => d.min() * e.min(),
+        None => p.weights[0] * c.weights[0],
+    };
+    if !(0.0 < least) {
+        return (f64::INFINITY, [f64::INFINITY; MAX_AXES]);
+    }
+    let mut axes = [0.0; MAX_AXES];
+    let mut squares = [0.0; MAX_DEGREE + 1];
+    for &axis in &bounds.used {
+        let (n, m) = (shifted(p, axis), compose(&shifted(c, axis), phi));
+        let f = match &below {
+            Some((d, e)) => n.times(e).combined(1.0, &m.times(d), -1.0),
+            None => n.combined(c.weights[0], &m, -p.weights[0]),
+        };
+        for (square, x) in squares.iter_mut().zip(f.coefficients()) {
+            *square += x * x;
+        }
+        axes[axis] = f.max_abs() / least + bounds.noise;
+    }
+    // All coordinates have one degree, so that their coefficients together are the control points of the difference.
+    let most = squares.iter().copied().fold(0.0, f64::max).sqrt();
+    (most / least + bounds.noise, axes)
+}
+
+/// f∘φ by de Casteljau's scheme in polynomials: f_i ← (1 − φ) f_i + φ f_{i+1}.
+fn compose(f: &Bernstein, phi: &Bernstein) -> Bernstein {
+    let m = f.degree();
+    if phi.coefficients() == [0.0, 1.0] {
+        return *f;
+    }
+    let rest = phi.scaled(-1.0, 1.0);
+    let mut q: Vec<Bernstein> = f.coefficients().iter().map(|c| Bernstein::new(&[*c])).collect();
+    for r in 1..=m {
+        for i in 0..=m - r {
+            q[i] = rest.times(&q[i]).combined(1.0, &phi.times(&q[i + 1]), 1.0);
+        }
+    }
+    q[0]
+}
+
+/// φ with the slopes of nearest places at both ends, of the greatest degree that the products leave room for.
+fn rising(p: &Bezier, c: &Bezier) -> Bernstein {
+    let linear = Bernstein::new(&[0.0, 1.0]);
+    let slope = |t: f64| {
+        let ([_, p1, _], [_, c1, _]) = (p.derivatives(t), c.derivatives(t));
+        dot(&p1, &c1) / dot(&c1, &c1)
+    };
+    let rational = !(p.is_polynomial() && c.is_polynomial());
+    let room = if rational { MAX_DEGREE - p.degree } else { MAX_DEGREE };
+    let (first, last) = (slope(0.0).clamp(0.0, 3.0), slope(1.0).clamp(0.0, 3.0));
+    if !(first.is_finite() && last.is_finite()) {
+        return linear;
+    }
+    if 3 * c.degree <= room {
+        let (a, b) = (first / 3.0, 1.0 - last / 3.0);
+        // Coefficients that rise make a polynomial that rises.
+        let (a, b) = if a <= b { (a, b) } else { (0.5 * (a + b), 0.5 * (a + b)) };
+        return Bernstein::new(&[0.0, a, b, 1.0]);
+    }
+    if 2 * c.degree <= room {
+        return Bernstein::new(&[0.0, (0.25 * (first + 2.0 - last)).clamp(0.0, 1.0), 1.0]);
+    }
+    linear
+}
+
+/// The place of `piece` between `low` and `high` that is nearest to `q`, near `guess`, by Newton's method.
+pub(super) fn foot(piece: &Bezier, q: &Position, guess: f64, low: f64, high: f64) -> f64 {
+    let mut t = guess.clamp(low, high);
+    for _ in 0..12 {
+        let [p, p1, p2] = piece.derivatives(t);
+        let d = minus(&p, q);
+        let (g, speed) = (dot(&d, &p1), dot(&p1, &p1));
+        let h = speed + dot(&d, &p2);
+        // Where the curvature misleads, a step along the tangent.
+        let step = if 0.1 * speed < h { g / h } else { g / speed };
+        if !step.is_finite() {
+            break;
+        }
+        let next = (t - step).clamp(low, high);
+        let moved = (next - t).abs();
+        t = next;
+        if moved <= 1.0e-15 {
+            break;
+        }
+    }
+    t
+}
+
+/// Bounds one interval: p and c as they are there.
+fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
+    let mut stack = vec![(*p, *c, 0)];
+    while let Some((p, c, depth)) = stack.pop() {
+        bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
+        let phi = rising(&p, &c);
+        let (most, axes) = difference(bounds, &p, &c, &phi);
+        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
+            bounds.take(most, &axes);
+            continue;
+        }
+        bounds.left -= 1;
+        let u = foot(&c, &p.eval(0.5), phi.eval(0.5), 0.0, 1.0);
+        stack.push((p.segment(0.5, 1.0), c.segment(u, 1.0), depth + 1));
+        stack.push((p.segment(0.0, 0.5), c.segment(0.0, u), depth + 1));
+    }
+}
+
+/// One of the two paths, and how far it has been run.
+struct Runner<'a> {
+    pieces: &'a [Bezier],
+    at: usize,
+    t: f64,
+    /// Lengths of the piece up to t = k/[`PLACES`].
+    lengths: [f64; PLACES + 1],
+}
+
+impl<'a> Runner<'a> {
+    fn new(pieces: &'a [Bezier]) -> Runner<'a> {
+        let mut runner = Runner { pieces, at: 0, t: 0.0, lengths: [0.0; PLACES + 1] };
+        runner.measure();
+        runner
+    }
+
+    fn piece(&self) -> Option<&'a Bezier> {
+        self.pieces.get(self.at)
+    }
+
+    fn measure(&mut self) {
+        let Some(piece) = self.piece() else { return };
+        let mut last = piece.start();
+        for k in 1..=PLACES {
+            let next = if k == PLACES { piece.end() } else { piece.eval(k as f64 / PLACES as f64) };
+            self.lengths[k] = self.lengths[k - 1] + distance(&last, &next);
+            last = next;
+        }
+    }
+
+    /// The length up to t.
+    fn length(&self, t: f64) -> f64 {
+        let x = t * PLACES as f64;
+        let k = (x as usize).min(PLACES - 1);
+        self.lengths[k] + (x - k as f64) * (self.lengths[k + 1] - self.lengths[k])
+    }
+
+    /// What is left of the piece.
+    fn rest(&self) -> f64 {
+        self.lengths[PLACES] - self.length(self.t)
+    }
+
+    /// Where the piece will be `more` farther on.
+    fn ahead(&self, more: f64) -> f64 {
+        let wanted = self.length(self.t) + more;
+        let k = self.lengths[1..].partition_point(|s| *s < wanted);
+        if PLACES <= k {
+            return 1.0;
+        }
+        let step = self.lengths[k + 1] - self.lengths[k];
+        let share = if 0.0 < step { (wanted - self.lengths[k]) / step } else { 0.0 };
+        (k as f64 + share) / PLACES as f64
+    }
+
+    /// Takes the part up to `t`; at 1 the next piece begins.
+    fn take(&mut self, t: f64) -> Option<Bezier> {
+        let part = self.piece()?.segment(self.t, t);
+        self.t = t;
+        if t == 1.0 {
+            self.at += 1;
+            self.t = 0.0;
+            self.measure();
+        }
+        Some(part)
+    }
+}
+
+/// Runs along both and bounds every interval.
+fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
+    let (mut p, mut c) = (Runner::new(path), Runner::new(curve));
+    let close = 1.0e-3 * bounds.tolerance;
+    loop {
+        let (to_p, to_c) = match (p.piece(), c.piece()) {
+            (None, None) => return,
+            // One has ended: it waits where it is for the other.
+            (Some(_), None) => {
+                let end = curve[curve.len() - 1].end();
+                if let Some(part) = p.take(1.0) {
+                    interval(&part, &Bezier::line(end, end), bounds);
+                }
+                continue;
+            }
+            (None, Some(_)) => {
+                let end = path[path.len() - 1].end();
+                if let Some(part) = c.take(1.0) {
+                    interval(&Bezier::line(end, end), &part, bounds);
+                }
+                continue;
+            }
+            (Some(own), Some(other)) => {
+                let (left_p, left_c) = (p.rest(), c.rest());
+                let slack = 4.0 * bounds.tolerance;
+                let mut to_p = 1.0;
+                if left_c <= 1.5 * left_p + slack {
+                    let t = foot(own, &other.end(), p.ahead(left_c), p.t, 1.0);
+                    if close < p.length(1.0) - p.length(t) {
+                        to_p = t;
+                    }
+                }
+                let mut to_c = 1.0;
+                if left_p <= 1.5 * left_c + slack {
+                    let u = foot(other, &own.end(), c.ahead(left_p), c.t, 1.0);
+                    if close < c.length(1.0) - c.length(u) {
+                        to_c = u;
+                    }
+                }
+                // Each joint before the other's: they belong together.
+                if to_p < 1.0 && to_c < 1.0 { (1.0, 1.0) } else { (to_p, to_c) }
+            }
+        };
+        if let (Some(part), Some(other)) = (p.take(to_p), c.take(to_c)) {
+            interval(&part, &other, bounds);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Position {
+        [x, y, 0.0, 0.0, 0.0, 0.0]
+    }
+
+    /// A quarter of a circle of radius 10 about the origin, from angle `quarter`·90°.
+    fn quarter(quarter: usize) -> Bezier {
+        let turn = |x: f64, y: f64| match quarter % 4 {
+            0 => at(x, y),
+            1 => at(-y, x),
+            2 => at(-x, -y),
+            _ => at(y, -x),
+        };
+        let mut arc = Bezier::new(&[turn(10., 0.), turn(10., 10.), turn(0., 10.)]);
+        arc.weights[1] = 0.5f64.sqrt();
+        arc
+    }
+
+    fn cubic(quarter_of: usize, k: f64) -> Bezier {
+        let arc = quarter(quarter_of);
+        let towards = |p: &Position, q: &Position| std::array::from_fn(|i| p[i] + k * (q[i] - p[i]));
+        let [p0, p1, p2] = [0, 1, 2].map(|i| arc.points[i]);
+        Bezier::new(&[p0, towards(&p0, &p1), towards(&p2, &p1), p2])
+    }
+
+    #[test]
+    fn the_cubic_quarter_circle_has_its_known_radius_error() {
+        // k = 4/3 (√2 − 1): from 0 to +2.7253e-4 of the radius.
+        let k = 4.0 / 3.0 * (2.0f64.sqrt() - 1.0);
+        let path: Vec<Bezier> = (0..4).map(|i| cubic(i, k)).collect();
+        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
+        let found = follow(&path, &curve, 1e-4).unwrap();
+        assert_eq!(found.map, Map::Nearest);
+        assert!((2.7253e-3..2.79e-3).contains(&found.distance), "{found:?}");
+        // At equal parameters they are much farther apart.
+        let equal = follow(&path, &curve, 1.0).unwrap();
+        assert_eq!(equal.map, Map::Parameter);
+        let apart = (0..=100).map(|i| f64::from(i) / 100.0);
+        let apart = apart.fold(0.0, |most, t| f64::max(most, distance(&path[0].eval(t), &curve[0].eval(t))));
+        assert!(0.05 < apart && apart <= equal.distance, "{apart} {equal:?}");
+    }
+
+    #[test]
+    fn parts_of_one_curve_follow_it_to_rounding() {
+        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
+        let cuts = [0.0, 0.13, 0.5, 0.81, 1.0];
+        let parts: Vec<Bezier> =
+            curve.iter().flat_map(|arc| cuts.windows(2).map(|w| arc.segment(w[0], w[1]))).collect();
+        for (a, b) in [(&parts, &curve), (&curve, &parts)] {
+            let found = follow(a, b, 1e-6).unwrap();
+            assert!(found.distance < 1e-8, "{found:?}");
+        }
+        let raised: Vec<Bezier> = curve.iter().map(|arc| arc.raised_to(5)).collect();
+        let found = follow(&raised, &curve, 1e-6).unwrap();
+        assert!(found.map == Map::Parameter && found.distance < 1e-11, "{found:?}");
+    }
+
+    #[test]
+    fn a_dropped_or_doubled_piece_is_far() {
+        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
+        let without: Vec<Bezier> = [0, 1, 3].into_iter().map(quarter).collect();
+        let twice: Vec<Bezier> = (0..8).map(quarter).collect();
+        let back: Vec<Bezier> = curve.iter().rev().map(Bezier::reversed).collect();
+        for wrong in [&without, &twice, &back] {
+            assert!(1.0 < follow(wrong, &curve, 1e-3).unwrap().distance);
+        }
+    }
+
+    #[test]
+    fn chords_of_a_circle_are_off_by_their_sagitta() {
+        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
+        let places: Vec<Position> =
+            curve.iter().flat_map(|arc| (0..16).map(|i| arc.eval(f64::from(i) / 16.0))).collect();
+        let line = |i: usize| Bezier::line(places[i], places[(i + 1) % 64]);
+        let path: Vec<Bezier> = (0..64).map(line).collect();
+        let sag = (0..64).fold(0.0, |most, i| {
+            let half = 0.5 * distance(&places[i], &places[(i + 1) % 64]);
+            f64::max(most, 10.0 - (100.0 - half * half).sqrt())
+        });
+        let found = follow(&path, &curve, 1e-3).unwrap();
+        assert!(sag <= found.distance && found.distance < 1.03 * sag + 2e-6, "{sag} {found:?}");
+    }
+}
