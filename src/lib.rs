@@ -28,6 +28,7 @@
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
+//! | [`map`] | which lines of the input each block came from |
 //! | [`points`] | the table of interpolated points |
 //! | [`setup`], [`summary`] | what a person at the machine must know, and what a compilation tells |
 
@@ -39,6 +40,7 @@ pub mod front;
 pub mod geom;
 pub mod ir;
 pub mod machine;
+pub mod map;
 pub mod pass;
 pub mod points;
 pub mod setup;
@@ -126,7 +128,7 @@ pub fn compile(
     }
     length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
-    let mut warnings = Diagnostics::new();
+    let mut warnings = intent.warnings.clone();
     let asked = options.motion.or(machine.motion);
     let motion = match asked {
         Some(motion) => motion,
@@ -262,7 +264,8 @@ pub fn verify_program(
     };
     let legal = pass::check::check(reading.value.decimals, &machine)?;
     verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
-    let mut warnings = reading.warnings;
+    let mut warnings = intent.warnings.clone();
+    warnings.extend(reading.warnings);
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
     Ok(Verified { report, intent, tolerance, warnings })
 }
@@ -270,7 +273,7 @@ pub fn verify_program(
 /// The form that a program's paths have: that of its first curve, or lines.
 fn form_of(decimals: &ir::Decimals) -> Form {
     let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step.cut()?.curve {
-        Written::Lines(_) => None,
+        Written::Lines(_) | Written::Arc(_) => None,
         Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
         Written::Nurbs(_) => Some(Form::Nurbs),
         Written::Through(kind, _) => Some(Form::Through(*kind)),

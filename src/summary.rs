@@ -83,7 +83,10 @@ impl Summary {
         let mut notes = Vec::new();
         let steps = &intent.program.steps;
         if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
-            notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
+            notes.push(match intent.logarithmic().next() {
+                Some(_) => "no spindle word is written: the input has no [process] spindle".to_owned(),
+                None => "no spindle word is written: the input starts none".to_owned(),
+            });
         }
         if setup.home.is_empty() {
             notes.push(
@@ -91,10 +94,12 @@ impl Summary {
                     .to_owned(),
             );
         }
-        notes.push(
-            "the path is that of the contact point; the wheel's radius and profile are not modelled"
-                .to_owned(),
-        );
+        if intent.logarithmic().next().is_some() {
+            notes.push(
+                "the path is that of the contact point; the wheel's radius and profile are not modelled"
+                    .to_owned(),
+            );
+        }
         if report.is_some() {
             notes.push(
             "the proof covers the programmed path, not what the control's own smoothing or compressor adds"

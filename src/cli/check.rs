@@ -22,6 +22,7 @@ impl Check {
                 console.diagnostics(&reading.warnings, sources);
                 console.diagnostics(&legal.warnings, sources);
             }
+            Understood::Intent(intent) => console.diagnostics(&intent.warnings, sources),
             Understood::Input(job) => {
                 if job.process.feed.is_none() || job.process.retract.is_none() {
                     let note = Diagnostic::note(

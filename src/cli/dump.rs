@@ -21,6 +21,10 @@ impl Dump {
                 console.diagnostics(&reading.warnings, sources);
                 io::print(&dump::decimals(&reading.value.decimals))
             }
+            Understood::Intent(intent) => {
+                console.diagnostics(&intent.warnings, sources);
+                io::print(&dump::intent(&intent))
+            }
             Understood::Input(job) => io::print(&dump::intent(&job.intent())),
         }
     }

@@ -2,8 +2,10 @@
 //!
 //! | module | input |
 //! |---|---|
+//! | [`apt`] | CL data of CATIA, NX, Creo, SolidWorks CAM, Fusion |
 //! | [`cutter`] | a conical cutter as its drawing states it |
 
+pub mod apt;
 pub mod cutter;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -20,6 +22,10 @@ pub struct Language {
     pub parse: fn(&Sources) -> Result<Intent, Diagnostics>,
     /// Whether a text looks like it.
     pub recognise: fn(&str) -> bool,
+    /// Whether a text that is not UTF-8 is read as Windows-1252.
+    pub windows_1252: bool,
+    /// Its grammar, in `grammar/`.
+    pub grammar: &'static str,
 }
 
 impl std::fmt::Debug for Language {
@@ -29,18 +35,47 @@ impl std::fmt::Debug for Language {
 }
 
 /// All languages.
-pub const LANGUAGES: &[Language] = &[Language {
-    name: "cutter",
-    about: "TOML with a [cutter] table: D1, S, C, r, length",
-    parse: |sources| {
-        let input = sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)?;
-        cutter::parse_program(input, SourceId::INPUT)
+pub const LANGUAGES: &[Language] = &[
+    Language {
+        name: "cutter",
+        about: "TOML with a [cutter] table: D1, S, C, r, length",
+        parse: |sources| {
+            let input = sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)?;
+            cutter::parse_program(input, SourceId::INPUT)
+        },
+        recognise: |text| {
+            let text = text.trim_start_matches('\u{feff}');
+            text.lines().any(|line| line.trim_start().starts_with("[cutter]"))
+        },
+        windows_1252: false,
+        grammar: "cutter",
     },
-    recognise: |text| {
-        let text = text.trim_start_matches('\u{feff}');
-        text.lines().any(|line| line.trim_start().starts_with("[cutter]"))
+    Language {
+        name: "apt",
+        about: "CL data of the CAM system that it looks like",
+        parse: apt::parse,
+        recognise: apt::recognise,
+        windows_1252: true,
+        grammar: "apt",
     },
-}];
+    cl_data("catia", "CL data of CATIA V5, 3DEXPERIENCE or Mastercam", |sources| {
+        apt::parse_as(sources, Some("catia"))
+    }),
+    cl_data("creo", "CL data of Creo", |sources| apt::parse_as(sources, Some("creo"))),
+    cl_data("nx", "CL data of NX", |sources| apt::parse_as(sources, Some("nx"))),
+    cl_data("solidworks", "CL data of SolidWorks CAM", |sources| apt::parse_as(sources, Some("solidworks"))),
+    cl_data("fusion", "CL data of Fusion or hyperMILL", |sources| apt::parse_as(sources, Some("fusion"))),
+    cl_data("iso", "CL data after ISO 3592 and 4343", |sources| apt::parse_as(sources, Some("iso"))),
+];
+
+/// CL data of one CAM system; its text is recognised as `apt`, which finds the system.
+const fn cl_data(
+    name: &'static str,
+    about: &'static str,
+    parse: fn(&Sources) -> Result<Intent, Diagnostics>,
+) -> Language {
+    Language { name, about, parse, recognise: |_| false, windows_1252: true, grammar: "apt" }
+}
 
 /// The language of a name.
 pub fn find(name: &str) -> Option<&'static Language> {

@@ -8,12 +8,14 @@
 //! | [`elementary`] | the only transcendental functions of the project |
 //! | [`logcurve`] | the path of a conical cutter, A = a ln(1 + bX) |
 //! | [`oddeven`] | its points by the odd-even third-order steps |
+//! | [`arc`] | arcs and helices, and how far a control may be from one |
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
 //! | [`fit`] | few pieces within a tolerance |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
 
+pub mod arc;
 pub mod bernstein;
 pub mod bezier;
 pub mod deviation;

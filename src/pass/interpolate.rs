@@ -60,12 +60,20 @@ pub fn interpolate(
                     span: located.span,
                 }));
             }
+            Step::Cut(Cut { feed, role, curve: Curve::Arc(arc) })
+                if !(machine.dialect.takes_arc)(arc.plane(), arc.is_helix()) =>
+            {
+                let curve = Curve::Lines(super::arcs::lines(arc, tolerance));
+                let step = Step::Cut(Cut { feed: *feed, role: *role, curve });
+                steps.push(Located { step, span: located.span });
+            }
             step @ (Step::Comment(_)
             | Step::Tool(_)
             | Step::Spindle(_)
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_)) => steps.push(Located { step: step.clone(), span: located.span }),
         }
@@ -92,7 +100,7 @@ fn reversed(curve: Curve) -> Curve {
         Curve::Through(kind, line) => Curve::Through(kind, line.reversed()),
         Curve::Polynomial(pieces) => Curve::Polynomial(pieces.iter().rev().map(Bezier::reversed).collect()),
         // `interpolate` makes none of these.
-        Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
+        Curve::Arc(_) | Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
     }
 }
 

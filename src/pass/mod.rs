@@ -13,6 +13,7 @@
 //! | [`check`] | what is left fits the machine: the result is [`check::Legal`] |
 //! | [`range`], [`limits`] | how far and how fast each axis has to move |
 
+pub mod arcs;
 pub mod check;
 pub mod choose;
 pub mod convert;

@@ -8,9 +8,11 @@ use super::words::{Word, word};
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
+use crate::dialect::arc;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
+use crate::geom::arc::{Plane, Sense};
 use crate::ir::{
     COEFFICIENTS, Decimals, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
     WrittenPolynomial,
@@ -28,6 +30,7 @@ enum Motion {
     None,
     Rapid,
     Line,
+    Arc(Sense),
     Poly,
     Bspline,
     Through(ThroughKind),
@@ -45,6 +48,8 @@ struct Block {
     has_polynomial: bool,
     pl: Option<Decimal>,
     pw: Option<Decimal>,
+    /// I J K.
+    center: [Option<Decimal>; 3],
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -117,7 +122,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         // A block of one axis letter and a digit is a move; only others can be lines of the frame.
         let is_move = frame.header_complete()
             && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
-        if !is_move || !reader.is_cutting() {
+        if !is_move || !reader.is_cutting() || frame.is_in_doubt() {
             let steps_before = reader.run.is_some();
             if steps_before && frame.may_begin(body) {
                 reader.flush();
@@ -166,6 +171,7 @@ impl Reader<'_> {
             has_polynomial: false,
             pl: None,
             pw: None,
+            center: [None; 3],
             feed: None,
             starts_spline: false,
         };
@@ -288,6 +294,11 @@ impl Reader<'_> {
         match (name, whole) {
             ("G", Some(0)) => self.set_motion(Motion::Rapid),
             ("G", Some(1)) => self.set_motion(Motion::Line),
+            ("G", Some(2)) => self.set_motion(Motion::Arc(Sense::Clockwise)),
+            ("G", Some(3)) => self.set_motion(Motion::Arc(Sense::CounterClockwise)),
+            ("I", _) => block.center[0] = Some(value),
+            ("J", _) => block.center[1] = Some(value),
+            ("K", _) => block.center[2] = Some(value),
             ("G", Some(code)) if STATE_CODES.contains(&format!("G{code}").as_str()) => {}
             ("F", _) => {
                 if value.compare(Decimal::ZERO).is_le() {
@@ -315,7 +326,9 @@ impl Reader<'_> {
                 let whole = span.start as usize..span.end as usize;
                 self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
             }
-            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line) | None => self.flush(),
+            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_)) | None => {
+                self.flush();
+            }
         }
         self.assembler.feed = Some(feed);
     }
@@ -334,7 +347,11 @@ impl Reader<'_> {
         if (block.pl.is_some() && !spline && self.motion != Motion::Poly) || (block.pw.is_some() && !spline) {
             return self.assembler.error("spline-word", "PL and PW belong to spline blocks", whole());
         }
-        if block.count == 0 && !block.has_polynomial {
+        let arc = matches!(self.motion, Motion::Arc(_));
+        if !arc && block.center.iter().any(Option::is_some) {
+            return self.assembler.error("arc-word", "I J K belong to G2 and G3", whole());
+        }
+        if block.count == 0 && !block.has_polynomial && !block.center.iter().any(Option::is_some) {
             if block.pl.is_some() || block.pw.is_some() {
                 self.assembler.error("spline-word", "a spline block without an axis", whole());
             }
@@ -346,6 +363,12 @@ impl Reader<'_> {
             }
             Motion::Rapid => self.assembler.rapid(block.named(), span),
             Motion::Line => self.assembler.line(block.named(), line, span),
+            Motion::Arc(sense) => {
+                let plane = Plane::Xy;
+                let said =
+                    arc::Said { plane, sense, named: block.named(), offsets: block.center, line, span };
+                arc::read(&mut self.assembler, &said);
+            }
             Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
         }
     }
@@ -410,7 +433,7 @@ impl Reader<'_> {
                     WrittenPoints { start: run.start, stride, units, lines: run.lines, rates: Vec::new() },
                 ))
             }
-            Motion::None | Motion::Rapid | Motion::Line => None,
+            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) => None,
         };
         let Some(curve) = curve else { return };
         self.path_reference(&curve, span);
@@ -534,7 +557,7 @@ impl Reader<'_> {
 /// is straight there and its length is the parameter. What the control makes of points is its own affair.
 fn linear_in_parameter(decimals: &Decimals, curve: &Written, axes: &[usize]) -> bool {
     match curve {
-        Written::Lines(_) | Written::Through(..) => true,
+        Written::Lines(_) | Written::Arc(_) | Written::Through(..) => true,
         Written::Polynomial(polynomial) => polynomial
             .blocks
             .iter()

@@ -164,6 +164,7 @@ impl CutterJob {
             program: Program { name: self.name.clone(), number: self.number, axes: Axes::xyza(), steps },
             tolerance: self.tolerance,
             name_span: self.name_span,
+            warnings: Diagnostics::new(),
         }
     }
 
