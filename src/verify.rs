@@ -8,6 +8,8 @@
 //! | odd-even steps | lines | point by point, φ the identity on each segment | proved |
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
+//! | a spline | its pieces as polynomial blocks or a B-spline | piece by piece, φ the identity on each | proved |
+//! | an arc | an arc, or lines | by its implicit form, φ the angle | proved |
 //! | either | the control's own spline through points | the points only | points-only |
 //!
 //! Where a path starts late or ends early by some rounding, the rest of the curve is missed by no more than that times
@@ -18,6 +20,7 @@
 mod arcs;
 mod lines;
 mod logarithmic;
+mod spline;
 
 pub use arcs::to_arc;
 
@@ -407,7 +410,12 @@ impl<'p> Cursor<'p> {
             Curve::Lines(line) => self.lines(line, &cut.curve).map(timed),
             Curve::Arc(arc) => self.arc(arc, &cut.curve).map(timed),
             Curve::Logarithmic(log) => self.logarithmic(log, feed, tolerance, ideal),
-            Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
+            Curve::Polynomial(pieces) => self.spline(pieces, &cut.curve).map(timed),
+            Curve::Nurbs(nurbs) => {
+                let pieces: Vec<Bezier> = nurbs.beziers().map(|(piece, _)| piece).collect();
+                self.spline(&pieces, &cut.curve).map(timed)
+            }
+            Curve::Through(..) => {
                 Err(self.differs("not-comparable", "this form of input cannot be compared yet".to_owned()))
             }
         }
