@@ -213,3 +213,74 @@ fn damage_to_a_spline_is_refused() {
         assert!(1 < tried, "{name} {motion}: {tried}");
     }
 }
+
+/// The third seed's Fig. 6, SPL blocks 26 to 28: where each ends, and K3 K2 K1 in X and Y.
+const FIG_6: [([f64; 2], [f64; 3], [f64; 3]); 3] = [
+    ([176.864, 28.928], [1.86078e-5, -3.90197e-3, 2.09682e-2], [1.89123e-4, -7.31031e-4, -1.23615e-1]),
+    ([176.536, 29.733], [-9.97782e-3, -1.61263e-1, 4.99237e-1], [2.46742e-2, -1.09843e-1, -7.19643e-1]),
+    ([175.897, 30.323], [-2.15417e-2, -9.66380e-2, 7.57138e-1], [1.98853e-2, -1.69499e-1, -4.40301e-1]),
+];
+
+/// Fig. 5, POLY blocks N140 to N150: PO[X], PO[Y] as far as the print can be read.
+const FIG_5: [(&str, &[f64]); 5] = [
+    ("PO[X]=(176.864,", &[-0.003_858_5, -0.000_014_5]),
+    ("PO[Y]=(28.928,", &[-0.000_172_3, -0.000_186_3]),
+    ("PO[X]=(176.536,", &[-0.191_200_3, 0.009_980_4]),
+    ("PO[Y]=(29.733,", &[-0.035_829, -0.024_669_7]),
+    ("PO[X]=(175.897,", &[-0.161_259, 0.021_540_4]),
+];
+
+/// One input makes the path of Fig. 5 and of Fig. 6: the printed pair agrees to 2e-4 mm.
+#[test]
+fn figures_5_and_6_are_one_path_of_one_input() {
+    let mut text = String::from(
+        "PARTNO FIG56\nLOADTL/10\nSPINDL/500,CLW\nRAPID\nGOTO/176.881,28.804,142\nFEDRAT/600,MMPM\nGOTO/176.881,28.804,-10\n",
+    );
+    for ([x, y], kx, ky) in FIG_6 {
+        // f(t) = K3 t³ + K2 t² + K1 t + end, t from 1 to 0: P3 = end, P2 = end + K1/3, P1 = end + (2 K1 + K2)/3.
+        let point =
+            |share: fn([f64; 3]) -> f64| format!("CNTRL/{:.7},{:.7},-10.0\n", x + share(kx), y + share(ky));
+        let inner = [point(|[_, k2, k1]| (2.0 * k1 + k2) / 3.0), point(|[_, _, k1]| k1 / 3.0)];
+        text += &["NURBS/\nKNOT/1.0\n", &inner[0], &inner[1], &point(|_| 0.0)].concat();
+    }
+    text += "FINI\n";
+    let number = |text: &str, after: &str| -> f64 {
+        let start = text.find(after).unwrap_or_else(|| panic!("{after} in {text}")) + after.len();
+        let length = text[start..].find([',', ')', ' ', '\n']).expect("an end");
+        text[start..start + length].parse().unwrap_or_else(|e| panic!("{after}: {e}"))
+    };
+    let sinumerik = Machine::built_in("sinumerik").expect("sinumerik");
+    let poly = program("nx", &text, &sinumerik).unwrap_or_else(|e| panic!("{e:?}")).text;
+    for (block, printed) in FIG_5 {
+        let mut found = Vec::new();
+        let mut after = block.to_owned();
+        for _ in printed {
+            let coefficient = number(&poly, &after);
+            let start = poly.find(&after).expect("found before") + after.len();
+            let length = poly[start..].find([',', ')']).expect("an end");
+            after = format!("{after}{},", &poly[start..start + length]);
+            found.push(coefficient);
+        }
+        // Both have the same ends, so that they differ by Δa2 (p² − p) + Δa3 (p³ − p).
+        let (d2, d3) = (found[0] - printed[0], found[1] - printed[1]);
+        let apart =
+            (0..=100).map(|i| f64::from(i) / 100.0).map(|p| (d2 * (p * p - p) + d3 * (p * p * p - p)).abs());
+        let worst = apart.fold(0.0, f64::max);
+        assert!(worst < 2e-4, "{block}: {worst}");
+    }
+    let heidenhain = Machine::built_in("heidenhain").expect("heidenhain");
+    let spl = program("nx", &text, &heidenhain).unwrap_or_else(|e| panic!("{e:?}")).text;
+    for ([x, y], kx, ky) in FIG_6 {
+        let block =
+            &spl[spl.find(&format!("SPL X+{x} Y+{y} ~")).unwrap_or_else(|| panic!("{x} {y} in {spl}"))..];
+        for (axis, k) in [("X", kx), ("Y", ky)] {
+            let found = ["K3", "K2", "K1"].map(|power| number(block, &format!("{power}{axis}")));
+            let at = |k: [f64; 3], t: f64| ((k[0] * t + k[1]) * t + k[2]) * t;
+            let worst = (0..=100)
+                .map(|i| f64::from(i) / 100.0)
+                .map(|t| (at(found, t) - at(k, t)).abs())
+                .fold(0.0, f64::max);
+            assert!(worst < 2e-4, "{axis} {x}: {worst}");
+        }
+    }
+}
