@@ -14,6 +14,7 @@ use crate::decimal::{Decimal, Spelling, write_units};
 use crate::diagnostic::Diagnostic;
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Units, Written, WrittenArc};
+use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::Axis;
 use crate::verify::to_arc;
@@ -38,16 +39,24 @@ pub fn motion_word(sense: Sense) -> &'static str {
     }
 }
 
+/// The sense of an arc as the control sees it: where it counts one of the plane's axes the other way, it sees a mirror
+/// image. The same way back.
+pub fn counted_sense(machine: &Machine, plane: Plane, sense: Sense) -> Sense {
+    let reversed = machine.reversed();
+    let [u, v, _] = plane.axes();
+    if reversed[u] == reversed[v] { sense } else { sense.reversed() }
+}
+
 /// Writes an arc as one block. `plane` is the one in force; another is chosen in the block.
 pub fn write(modal: &mut Modal<'_>, arc: &WrittenArc, feed: Option<Decimal>, plane: &mut Option<Plane>) {
     let [u, v, w] = arc.plane.axes();
     modal.begin("N");
     if *plane != Some(arc.plane) {
         modal.text(plane_word(arc.plane));
-        modal.out.push(b' ');
+        modal.gap();
         *plane = Some(arc.plane);
     }
-    modal.motion(motion_word(arc.sense));
+    modal.motion(motion_word(counted_sense(modal.machine, arc.plane, arc.sense)));
     modal.inverse(false);
     let axes = modal.machine.axes.count();
     let digits = modal.machine.axis_digits();
@@ -65,8 +74,10 @@ pub fn write(modal: &mut Modal<'_>, arc: &WrittenArc, feed: Option<Decimal>, pla
         };
         modal.out.push(CENTER[i]);
         let spelling = Spelling { sign_always: false, ..modal.spelling };
-        write_units(&mut modal.out, center - arc.start[i], digits[i], spelling);
-        modal.out.push(b' ');
+        // From where the arc starts, as the control counts: no work offset is in it.
+        let offset = modal.counted(i, center) - modal.counted(i, arc.start[i]);
+        write_units(&mut modal.out, offset, digits[i], spelling);
+        modal.gap();
     }
     modal.feed(feed);
     modal.reached(&arc.end);
@@ -108,16 +119,22 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
     }
     let end = assembler.target(said.named);
     let start: Units = assembler.start(&end, said.span);
+    let reversed = assembler.machine.reversed();
     let mut center = [0; 2];
     for (center, i) in center.iter_mut().zip([u, v]) {
         let offset = said.offsets[i].unwrap_or_default();
-        let Some(units) = assembler.units(i, offset, range()) else { return };
-        match start[i].checked_add(units) {
+        let Some(units) = offset.units(assembler.digits[i]) else {
+            let message = format!("{offset} has more decimals than the machine file gives this axis");
+            return assembler.error("digits-too-many", message, range());
+        };
+        let units = if reversed[i] { units.checked_neg() } else { Some(units) };
+        match units.and_then(|units| start[i].checked_add(units)) {
             Some(sum) => *center = sum,
             None => return assembler.error("arc-center", "the centre is out of range", range()),
         }
     }
-    let arc = WrittenArc { plane: said.plane, sense: said.sense, start, end, center, line: said.line };
+    let sense = counted_sense(assembler.machine, said.plane, said.sense);
+    let arc = WrittenArc { plane: said.plane, sense, start, end, center, line: said.line };
     add(assembler, arc, &end, said.span);
 }
 

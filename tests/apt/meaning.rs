@@ -225,3 +225,23 @@ fn the_map_leads_from_blocks_to_lines() {
         assert!(find(14).all(|line| line.contains("Z9") || line.contains("Z+9")), "{seen:?}");
     }
 }
+
+/// A control that counts an axis the other way sees a mirror image: the other sense, and the other sign in I J K.
+#[test]
+fn arcs_on_an_axis_that_counts_the_other_way() {
+    let text = format!("PARTNO ARC\n{START}CIRCLE/5,0,0,0,0,1,5\nGOTO/5,5,0\nGOTO/9,9,9\nFINI\n");
+    for (name, word, other) in [
+        ("sinumerik", "G3 X5 Y5 I5 J0", "G2 X-5 Y5 I-5 J0"),
+        ("mazak", "G3 X5. Y5. I5. J0.", "G2 X-5. Y5. I-5. J0."),
+        ("heidenhain", "C X+5 Y+5 DR+", "C X-5 Y+5 DR-"),
+    ] {
+        let file = format!("extends = \"{name}\"\n[axis.X]\nsign = -1\n");
+        for (machine, word) in [
+            (Machine::built_in(name).expect("a default machine"), word),
+            (crate::support::machine(&file), other),
+        ] {
+            let output = program("creo", &text, &machine).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+            assert!(output.text.contains(word), "{word}\n{}", output.text);
+        }
+    }
+}

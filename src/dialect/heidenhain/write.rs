@@ -2,6 +2,7 @@
 //! ends with `~`, and the lines that continue it have none.
 
 use crate::decimal::{Decimal, Spelling};
+use crate::dialect::arc::counted_sense;
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
@@ -117,7 +118,7 @@ impl Writer<'_> {
         self.modal.text("C ");
         self.modal.axis(u, arc.end[u]);
         self.modal.axis(v, arc.end[v]);
-        self.modal.text(match arc.sense {
+        self.modal.text(match counted_sense(self.modal.machine, arc.plane, arc.sense) {
             Sense::Clockwise => "DR- ",
             Sense::CounterClockwise => "DR+ ",
         });

@@ -34,6 +34,7 @@ impl Reader<'_, '_> {
         }
         let end = self.assembler.target(block.named());
         let start = self.assembler.start(&end, span);
+        let sense = arc::counted_sense(self.assembler.machine, Plane::Xy, sense);
         let arc = WrittenArc { plane: Plane::Xy, sense, start, end, center, line };
         arc::add(&mut self.assembler, arc, &end, span);
     }
