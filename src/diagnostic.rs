@@ -177,6 +177,8 @@ impl Diagnostics {
             );
             if let Some((span, source)) = diagnostic.span.and_then(|s| Some((s, sources.get(s.source)?))) {
                 let (window, first_line, range) = window(&source.text, span);
+                // A carriage return would be drawn; a blank in its place moves nothing.
+                let window = window.replace('\r', " ");
                 let mut annotation = AnnotationKind::Primary.span(range);
                 if !diagnostic.label.is_empty() {
                     annotation = annotation.label(diagnostic.label.as_str());

@@ -1,6 +1,8 @@
 //! Programs as text, to be looked at: one step a line, numbers in full precision.
 
-use crate::ir::{Curve, Cut, Decimals, Intent, Method, Polyline, Role, Shift, Step, Units, Written};
+use crate::ir::{
+    Auxiliary, Curve, Cut, Decimals, Intent, Method, Polyline, Role, Shift, Step, Units, Written,
+};
 use crate::units::{Axes, Position};
 use std::fmt::{Display, Write as _};
 
@@ -15,6 +17,18 @@ pub fn intent(intent: &Intent) -> String {
     for located in &program.steps {
         step(&mut text, &axes, &located.step, |text, curve| match curve {
             Curve::Lines(line) => points(text, &axes, "lines", line),
+            Curve::Arc(arc) => {
+                let _ = writeln!(
+                    text,
+                    "arc {:?} {:?} from {} to {} about {:?} radius {}",
+                    arc.plane(),
+                    arc.sense(),
+                    position(&axes, &arc.start()),
+                    position(&axes, &arc.end()),
+                    arc.center(),
+                    arc.radius()
+                );
+            }
             Curve::Through(kind, line) => points(text, &axes, &format!("through {kind:?}"), line),
             Curve::Polynomial(pieces) => {
                 let _ = writeln!(text, "polynomial");
@@ -77,12 +91,27 @@ pub fn decimals(decimals: &Decimals) -> String {
             Written::Lines(line) | Written::Through(_, line) => {
                 let kind = match curve {
                     Written::Through(kind, _) => format!("through {kind:?}"),
-                    Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) => "lines".to_owned(),
+                    Written::Lines(_) | Written::Arc(_) | Written::Polynomial(_) | Written::Nurbs(_) => {
+                        "lines".to_owned()
+                    }
                 };
                 let _ = writeln!(text, "{kind} from {}", at(&line.start));
                 for point in line.points() {
                     let _ = writeln!(text, "    {}", at(&point));
                 }
+            }
+            Written::Arc(arc) => {
+                let [u, v, _] = arc.plane.axes();
+                let center = [(arc.center[0], u), (arc.center[1], v)]
+                    .map(|(units, i)| crate::decimal::units_to_f64(units, decimals.digits[i]));
+                let _ = writeln!(
+                    text,
+                    "arc {:?} {:?} from {} to {} about {center:?}",
+                    arc.plane,
+                    arc.sense,
+                    at(&arc.start),
+                    at(&arc.end)
+                );
             }
             Written::Polynomial(polynomial) => {
                 let _ = writeln!(text, "polynomial from {}", at(&polynomial.start));
@@ -125,6 +154,13 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
         Step::Tool(number) => writeln!(text, "tool {number}"),
         Step::Spindle(rpm) => writeln!(text, "spindle {rpm}"),
         Step::Coolant => writeln!(text, "coolant"),
+        Step::Auxiliary(auxiliary) => match auxiliary {
+            Auxiliary::CoolantStop => writeln!(text, "coolant stops"),
+            Auxiliary::SpindleStop => writeln!(text, "spindle stops"),
+            Auxiliary::Stop => writeln!(text, "stop"),
+            Auxiliary::OptionalStop => writeln!(text, "optional stop"),
+            Auxiliary::Dwell(seconds) => writeln!(text, "dwell {seconds}"),
+        },
         Step::Home(axis) => writeln!(text, "home {}", axes.name(*axis)),
         Step::Shift(shifts) => {
             let word = |Shift { axis, to, parameter }: &Shift<N>| {
@@ -141,6 +177,7 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
             let role = match role {
                 Role::Path => "cut",
                 Role::Approach => "approach",
+                Role::AsAsked => "cut as asked",
             };
             let feed = feed.as_ref().map_or("none".to_owned(), ToString::to_string);
             let _ = write!(text, "{role} feed {feed} ");

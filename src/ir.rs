@@ -12,6 +12,7 @@
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
+use crate::geom::arc::{Arc, Plane, Sense};
 use crate::geom::bezier::Bezier;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
@@ -57,6 +58,8 @@ pub enum Step<N, C> {
     /// From here on the text counts these axes from other places: a work offset. Positions here stay as they are. None:
     /// every axis counts from the work's own zero again.
     Shift(Vec<Shift<N>>),
+    /// Something is switched, or time passes.
+    Auxiliary(Auxiliary<N>),
     /// Rapid traverse of the axes named (index into the program's axes, end position).
     Rapid(Vec<(usize, N)>),
     /// A path at feed.
@@ -74,8 +77,48 @@ impl<N, C> Step<N, C> {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => None,
         }
+    }
+}
+
+/// Something that is switched between moves, or time that passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Auxiliary<N> {
+    /// The coolant stops.
+    CoolantStop,
+    /// The spindle stops.
+    SpindleStop,
+    /// The program stops until the operator goes on: M0.
+    Stop,
+    /// As before, where the operator asked for it: M1.
+    OptionalStop,
+    /// So many seconds pass.
+    Dwell(N),
+}
+
+impl<N> Auxiliary<N> {
+    /// Its key in a machine file.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Auxiliary::CoolantStop => "coolant_stop",
+            Auxiliary::SpindleStop => "spindle_stop",
+            Auxiliary::Stop => "stop",
+            Auxiliary::OptionalStop => "optional_stop",
+            Auxiliary::Dwell(_) => "dwell",
+        }
+    }
+
+    /// The same with another kind of number; none where `f` has none.
+    pub fn try_map<M>(self, f: impl Fn(N) -> Option<M>) -> Option<Auxiliary<M>> {
+        Some(match self {
+            Auxiliary::CoolantStop => Auxiliary::CoolantStop,
+            Auxiliary::SpindleStop => Auxiliary::SpindleStop,
+            Auxiliary::Stop => Auxiliary::Stop,
+            Auxiliary::OptionalStop => Auxiliary::OptionalStop,
+            Auxiliary::Dwell(seconds) => Auxiliary::Dwell(f(seconds)?),
+        })
     }
 }
 
@@ -109,6 +152,8 @@ pub enum Role {
     Path,
     /// It brings the tool to the work or away.
     Approach,
+    /// It shapes the work in the form that was asked for: lines stay lines.
+    AsAsked,
 }
 
 /// What was asked: a program, and how exactly.
@@ -137,6 +182,7 @@ impl Intent {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => true,
         };
         let steps = &self.program.steps;
@@ -156,7 +202,7 @@ impl Intent {
         self.program.steps.iter().filter_map(|located| match located.step.cut()? {
             Cut { feed, curve: Curve::Logarithmic(log), .. } => Some((log, *feed, located.span)),
             Cut {
-                curve: Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..),
+                curve: Curve::Lines(_) | Curve::Arc(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..),
                 ..
             } => None,
         })
@@ -168,6 +214,8 @@ impl Intent {
 pub enum Curve {
     /// Straight lines.
     Lines(Polyline),
+    /// An arc or a helix.
+    Arc(Arc),
     /// Polynomial pieces, joined end to start.
     Polynomial(Vec<Bezier>),
     /// A B-spline, rational where its weights differ.
@@ -179,7 +227,8 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// The pieces that it is made of, end to start; none of a logarithmic curve, nor of one that only the control knows.
+    /// The pieces that it is made of, end to start; none of a logarithmic curve or an arc, nor of one that only the control
+    /// knows.
     pub fn pieces(&self) -> Vec<Bezier> {
         match self {
             Curve::Lines(line) => {
@@ -188,7 +237,7 @@ impl Curve {
             }
             Curve::Polynomial(pieces) => pieces.clone(),
             Curve::Nurbs(nurbs) => nurbs.beziers().map(|(piece, _)| piece).collect(),
-            Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
+            Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
         }
     }
 }
@@ -243,12 +292,14 @@ pub struct Polyline {
     pub values: Vec<f64>,
     /// How often a minute each line could be made, where that is its feed; otherwise empty.
     pub rates: Vec<f64>,
+    /// The line of the input that each point came from; empty where the points were made.
+    pub lines: Vec<u32>,
 }
 
 impl Polyline {
     /// A polyline of no points yet.
     pub fn new(start: Position, stride: usize) -> Polyline {
-        Polyline { start, stride, values: Vec::new(), rates: Vec::new() }
+        Polyline { start, stride, values: Vec::new(), rates: Vec::new(), lines: Vec::new() }
     }
 
     /// The same line from its end to its start.
@@ -308,6 +359,8 @@ impl Decimals {
 pub enum Written {
     /// Straight lines.
     Lines(WrittenPoints),
+    /// An arc or a helix.
+    Arc(WrittenArc),
     /// Polynomial blocks.
     Polynomial(WrittenPolynomial),
     /// A B-spline.
@@ -345,6 +398,23 @@ impl WrittenPoints {
             point
         })
     }
+}
+
+/// An arc, or one turn of a helix at most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenArc {
+    /// Its plane.
+    pub plane: Plane,
+    /// Which way round.
+    pub sense: Sense,
+    /// Where it starts.
+    pub start: Units,
+    /// Where it ends; where it starts, in the plane, for a whole turn.
+    pub end: Units,
+    /// The centre, in the plane's first and second axis.
+    pub center: [i64; 2],
+    /// The line of the text that it came from, or 0.
+    pub line: u32,
 }
 
 /// Polynomial blocks, joined end to start.

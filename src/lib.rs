@@ -28,6 +28,7 @@
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
+//! | [`map`] | which lines of the input each block came from |
 //! | [`points`] | the table of interpolated points |
 //! | [`setup`], [`summary`] | what a person at the machine must know, and what a compilation tells |
 
@@ -39,6 +40,7 @@ pub mod front;
 pub mod geom;
 pub mod ir;
 pub mod machine;
+pub mod map;
 pub mod pass;
 pub mod points;
 pub mod setup;
@@ -291,7 +293,7 @@ pub fn verify_program(
 /// The form that a program's paths have: that of its first curve, or lines.
 fn form_of(decimals: &ir::Decimals) -> Form {
     let mut curves = decimals.program.steps.iter().filter_map(|located| match &located.step.cut()?.curve {
-        Written::Lines(_) => None,
+        Written::Lines(_) | Written::Arc(_) => None,
         Written::Polynomial(_) => Some(Form::Polynomial { closing: false }),
         Written::Nurbs(_) => Some(Form::Nurbs),
         Written::Through(kind, _) => Some(Form::Through(*kind)),

@@ -8,7 +8,7 @@ use crate::ir::{Curve, Decimals, Intent, Role, Step, Written};
 use crate::machine::{Machine, Moves};
 use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
-use crate::units::{Axes, Kind};
+use crate::units::{Axes, Kind, Position};
 use serde::Serialize;
 
 /// The figures of a program on one machine.
@@ -76,6 +76,7 @@ impl Setup {
             | Step::Spindle(_)
             | Step::Coolant
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_) => None,
         });
@@ -95,9 +96,7 @@ impl Setup {
             path_minutes: range,
             parameters: parameters(decimals, machine),
             needs: needs(decimals, machine),
-            not_covered: ["the control's smoothing and compressor", "the wheel's radius and profile"]
-                .map(str::to_owned)
-                .to_vec(),
+            not_covered: not_covered(intent),
         }
     }
 
@@ -170,7 +169,17 @@ impl Setup {
 fn amount(curve: &Curve, axes: &Axes) -> f64 {
     match curve {
         Curve::Logarithmic(log) => log.curve.amount(log.along),
-        Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => {
+        Curve::Arc(arc) => arc.length(),
+        Curve::Lines(line) | Curve::Through(_, line) => {
+            let linear: Vec<usize> = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).collect();
+            let mut from = line.start;
+            let way = |to: Position| {
+                let from = std::mem::replace(&mut from, to);
+                linear.iter().map(|i| (to[*i] - from[*i]) * (to[*i] - from[*i])).sum::<f64>().sqrt()
+            };
+            line.points().map(way).sum()
+        }
+        Curve::Polynomial(_) | Curve::Nurbs(_) => {
             curve.pieces().iter().map(|piece| linear_length(piece, axes)).sum()
         }
     }
@@ -203,8 +212,19 @@ fn zero(intent: &Intent) -> Option<String> {
     Some(format!("{x} WHERE THE DIAMETER IS D1 {d1}, {y} {z} CONTACT THERE, {a} THE CUTTER'S INDEX"))
 }
 
+/// What the proof does not cover.
+fn not_covered(intent: &Intent) -> Vec<String> {
+    let mut all = vec!["the control's smoothing and compressor".to_owned()];
+    if intent.logarithmic().next().is_some() {
+        all.push("the wheel's radius and profile".to_owned());
+    }
+    all
+}
+
 /// Where rapids are clear: the first rapid's axis and place.
 fn clear(intent: &Intent) -> Option<(String, f64)> {
+    // Elsewhere rapids go where the input sends them.
+    intent.logarithmic().next()?;
     let axes = intent.program.axes;
     intent.program.steps.iter().find_map(|located| match &located.step {
         Step::Rapid(targets) => targets.first().map(|(axis, to)| (axes.name(*axis).to_string(), *to)),
@@ -214,6 +234,7 @@ fn clear(intent: &Intent) -> Option<(String, f64)> {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Cut(_) => None,
     })
 }
@@ -241,7 +262,7 @@ fn needs(decimals: &Decimals, machine: &Machine) -> Vec<String> {
     let mut needs: Vec<String> = Vec::new();
     for cut in decimals.program.steps.iter().filter_map(|located| located.step.cut()) {
         let form = match &cut.curve {
-            Written::Lines(_) => continue,
+            Written::Lines(_) | Written::Arc(_) => continue,
             Written::Polynomial(_) => None,
             Written::Nurbs(_) => Some(Form::Nurbs),
             Written::Through(kind, _) => Some(Form::Through(*kind)),

@@ -39,12 +39,35 @@ pub struct Source {
     pub name: String,
     /// Its text.
     pub text: String,
+    /// How its bytes were read.
+    pub encoding: Encoding,
+}
+
+/// How the bytes of a text were read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// As UTF-8.
+    #[default]
+    Utf8,
+    /// As Windows-1252, which holds Latin-1: they are not UTF-8.
+    Windows1252,
 }
 
 impl Source {
     /// A named text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
-        Source { name: name.into(), text: text.into() }
+        Source { name: name.into(), text: text.into(), encoding: Encoding::Utf8 }
+    }
+
+    /// Bytes as a named text: UTF-8, or else Windows-1252.
+    pub fn decode(name: impl Into<String>, bytes: Vec<u8>) -> Source {
+        match String::from_utf8(bytes) {
+            Ok(text) => Source::new(name, text),
+            Err(error) => {
+                let (text, _) = encoding_rs::WINDOWS_1252.decode_without_bom_handling(error.as_bytes());
+                Source { encoding: Encoding::Windows1252, ..Source::new(name, text) }
+            }
+        }
     }
 }
 
@@ -54,12 +77,16 @@ pub struct Sources {
     files: Vec<Source>,
     /// The text behind [`SourceId::PROGRAM`], where a failed compilation left one.
     pub program: Option<Source>,
+    /// The table of words that CL data is read with, beside the built-in ones.
+    pub words: Option<SourceId>,
+    /// Whether words of the input that are not understood are left out with a warning.
+    pub lenient: bool,
 }
 
 impl Sources {
     /// The input alone.
     pub fn new(input: Source) -> Sources {
-        Sources { files: vec![input], program: None }
+        Sources { files: vec![input], ..Sources::default() }
     }
 
     /// Adds a text.

@@ -86,7 +86,10 @@ impl Summary {
         let mut notes = Vec::new();
         let steps = &intent.program.steps;
         if !steps.iter().any(|located| matches!(located.step, Step::Spindle(_))) {
-            notes.push("no spindle word is written: the input has no [process] spindle".to_owned());
+            notes.push(match intent.logarithmic().next() {
+                Some(_) => "no spindle word is written: the input has no [process] spindle".to_owned(),
+                None => "no spindle word is written: the input starts none".to_owned(),
+            });
         }
         if setup.home.is_empty() {
             notes.push(

@@ -8,6 +8,7 @@
 //! | odd-even steps | lines | point by point, φ the identity on each segment | proved |
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
+//! | an arc | an arc, or lines | by its implicit form, φ the angle | proved |
 //! | either | the control's own spline through points | the points only | points-only |
 //! | lines | lines | point by point | proved |
 //! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
@@ -17,9 +18,13 @@
 //!
 //! What the control adds (G642, COMPCAD, cycle 32, G61.1) is not covered.
 
+mod arcs;
 mod curve;
 mod form;
+mod lines;
 mod logarithmic;
+
+pub use arcs::to_arc;
 
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -29,14 +34,13 @@ use crate::geom::deviation::Bound;
 use crate::geom::follow::Map;
 use crate::geom::nurbs::{Nurbs, NurbsError};
 use crate::ir::{
-    Curve, Cut, Decimals, Intent, Located, Logarithmic, Polyline, Role, Shift, Step, Units, Written,
-    WrittenPoints,
+    Curve, Cut, Decimals, Intent, Located, Logarithmic, Role, Shift, Step, Units, Written, WrittenPoints,
 };
 use crate::machine::Machine;
 use crate::pass::stretch::of_curve;
 use crate::setup::Setup;
 use crate::source::{SourceId, Span};
-use crate::units::{Kind, MAX_AXES, Position};
+use crate::units::{MAX_AXES, Position};
 
 pub use form::same_form;
 
@@ -72,6 +76,8 @@ pub struct Report {
     pub map: Option<Map>,
     /// Blocks that cut.
     pub path_blocks: usize,
+    /// How many blocks each step of the intent became; a remark none.
+    pub blocks: Vec<u32>,
     /// The paths' length, mm.
     pub cutting_length: f64,
     /// How long the paths take at their F, minutes: without approaches, rapids and acceleration.
@@ -104,6 +110,7 @@ pub fn verify(
         from_ideal: None,
         map: None,
         path_blocks: 0,
+        blocks: Vec::with_capacity(intent.program.steps.len()),
         cutting_length: 0.0,
         minutes: 0.0,
         feed_error: 0.0,
@@ -138,10 +145,15 @@ pub fn verify(
         return Err(Diagnostic::refusal("number-differs", message).into());
     }
     let origin = [Origin::default(); MAX_AXES];
+    report.setup = Setup::new(intent, decimals, machine);
+    let asked = report.setup.remarks(machine);
+    let leading = decimals.setup.get(asked.len()..).unwrap_or_default();
     let radius = intent.radius();
-    let mut cursor = Cursor { decimals, machine, text, id, at: 0, within: 0, origin, radius, map: None };
+    let mut cursor =
+        Cursor { decimals, machine, text, id, at: 0, within: 0, leading, origin, radius, map: None };
     let mut ideal = Ideal(None);
     for located in &intent.program.steps {
+        report.blocks.push(u32::from(!matches!(located.step, Step::Comment(_))));
         match &located.step {
             Step::Comment(comment) => {
                 for line in crate::setup::wrapped(comment, machine) {
@@ -165,6 +177,7 @@ pub fn verify(
                     |step| matches!(step, Step::Spindle(read) if Some(*read) == rounded),
                 )?;
             }
+            Step::Auxiliary(auxiliary) => cursor.auxiliary(auxiliary, machine.digits.feed)?,
             Step::Rapid(targets) => {
                 let origin = cursor.origin;
                 let names: Vec<String> = targets
@@ -197,12 +210,15 @@ pub fn verify(
                 }
                 report.deviation = report.deviation.max(found.deviation);
                 report.status = report.status.max(found.status);
+                if let Some(last) = report.blocks.last_mut() {
+                    *last = u32::try_from(found.path_blocks).unwrap_or(u32::MAX);
+                }
                 if let Some(from_ideal) = found.from_ideal {
                     report.from_ideal =
                         Some(report.from_ideal.map_or(from_ideal, |known| known.max(from_ideal)));
                 }
                 report.map = cursor.map;
-                if *role == Role::Path {
+                if *role != Role::Approach {
                     report.path_blocks += found.path_blocks;
                     report.cutting_length += found.cutting_length;
                     report.minutes += found.minutes;
@@ -216,9 +232,7 @@ pub fn verify(
         let diagnostic = Diagnostic::refusal("more-than-asked", "the program goes on after what was asked");
         return Err(diagnostic.at(cursor.place(left), "").into());
     }
-    report.setup = Setup::new(intent, decimals, machine);
-    let asked = report.setup.remarks(machine);
-    if decimals.setup != asked {
+    if decimals.setup.get(..asked.len()) != Some(&asked[..]) || !cursor.leading.is_empty() {
         let message = "the remarks that say what to set up are not those of this program";
         let wrong = decimals.setup.iter().find(|remark| !asked.contains(remark));
         let start = wrong.and_then(|remark| text.find(remark.as_str()));
@@ -239,6 +253,8 @@ struct Cursor<'p> {
     id: SourceId,
     at: usize,
     within: usize,
+    /// Remarks of the program right behind those that say what to set up: nothing in a text tells them apart.
+    leading: &'p [String],
     /// Where each axis counts from, which is where it is rounded from.
     origin: [Origin; MAX_AXES],
     /// The radius at which rotary axes count, mm.
@@ -287,6 +303,12 @@ impl<'p> Cursor<'p> {
 
     /// Meets a remark; others may stand before it.
     fn comment(&mut self, asked: &str) -> Result<(), Diagnostics> {
+        if let Some((read, rest)) = self.leading.split_first()
+            && read == asked
+        {
+            self.leading = rest;
+            return Ok(());
+        }
         while let Some(Located { step: Step::Comment(read), .. }) = self.step() {
             self.at += 1;
             if read == asked {
@@ -349,6 +371,7 @@ impl<'p> Cursor<'p> {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => located.span,
         }
     }
@@ -407,8 +430,13 @@ impl<'p> Cursor<'p> {
         if !matches!(curve, Curve::Logarithmic(_)) {
             self.same_feed(cut.feed, asked)?;
         }
+        let timed = |found: Found| match feed {
+            Some(feed) => Found { minutes: found.cutting_length / feed, ..found },
+            None => found,
+        };
         match (curve, &cut.curve) {
-            (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written),
+            (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written).map(timed),
+            (Curve::Arc(arc), written) => self.arc(arc, written).map(timed),
             (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),
             (Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..), written) => {
                 let (machine, radius) = (self.machine, self.radius);
@@ -435,49 +463,6 @@ impl<'p> Cursor<'p> {
         }
         let asked = asked.map_or("none".to_owned(), |feed| feed.to_string());
         Err(self.differs("feed-differs", format!("the feed differs from the {asked} that was asked")))
-    }
-
-    /// Straight moves that were asked as such: every point is met exactly, as rounded.
-    fn lines(&mut self, asked: &Polyline, written: &Written) -> Result<Found, Diagnostics> {
-        let Written::Lines(points) = written else {
-            return Err(self.differs("step-differs", "here a straight move was asked".to_owned()));
-        };
-        let mut worst = 0.0f64;
-        for point in asked.points() {
-            let Some(units) = self.next_point(points) else {
-                return Err(self.differs("less-than-asked", "a straight move is missing here".to_owned()));
-            };
-            for axis in 0..asked.stride {
-                if self.units(axis, point[axis]) != Some(units[axis]) {
-                    let name = self.decimals.program.axes.name(axis);
-                    self.within -= 1;
-                    return Err(
-                        self.differs("point-differs", format!("{name} was asked to be {}", point[axis]))
-                    );
-                }
-            }
-            let read = self.decimals.position(&units);
-            worst = (0..asked.stride).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
-        }
-        let axes = self.decimals.program.axes;
-        let linear = |i: &usize| axes.kind(*i) == Kind::Linear;
-        let (mut from, mut length) = (asked.start, 0.0);
-        for to in asked.points() {
-            length += (0..asked.stride)
-                .filter(linear)
-                .map(|i| (to[i] - from[i]) * (to[i] - from[i]))
-                .sum::<f64>()
-                .sqrt();
-            from = to;
-        }
-        let count = asked.count();
-        self.leave(points);
-        Ok(Found {
-            deviation: Bound { mm: worst, rad: 0.0 },
-            path_blocks: count,
-            cutting_length: length,
-            ..Found::new()
-        })
     }
 
     /// The next point of a run.
@@ -527,7 +512,7 @@ impl<'p> Cursor<'p> {
                     .map_err(|error| self.differs("spline-unsound", error.to_string()))?;
                 Ok(spline.beziers().map(|(piece, _)| piece).collect())
             }
-            Written::Lines(_) | Written::Through(..) => Ok(Vec::new()),
+            Written::Lines(_) | Written::Arc(_) | Written::Through(..) => Ok(Vec::new()),
         }
     }
 }

@@ -204,3 +204,48 @@ fn lists_and_dumps_are_printed() {
     assert_eq!(code(&splinepost(&["check", &mill()], dir.path())), 0);
     assert_eq!(code(&splinepost(&["completions", "bash"], dir.path())), 0);
 }
+
+#[test]
+fn cl_data_goes_the_same_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let within = folder.path();
+    let input = crate::support::folder("fixtures/apt/creo-pocket/input.ncl").display().to_string();
+    let run = |arguments: &[&str]| splinepost(arguments, within);
+    let output = run(&["compile", &input, "--to", "mazak", "-o", "P.EIA", "--map", "P.json"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let map = fs::read_to_string(within.join("P.json")).expect("a map");
+    assert!(map.contains("\"blocks\":[") && map.contains("input.ncl"), "{map}");
+    let output = run(&["verify", "P.EIA", "--against", &input, "--to", "mazak"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(code(&run(&["check", &input])), 0);
+    let dump = String::from_utf8(run(&["dump", &input, "--from", "creo"]).stdout).expect("UTF-8");
+    assert!(dump.contains("arc Xy CounterClockwise"), "{dump}");
+    // As another system the arcs go the other way, which their neighbours contradict.
+    let output = run(&["dump", &input, "--from", "nx"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("arc Xy Clockwise"));
+    // What nobody knows: an error, a warning, or what the shop says.
+    let text = "UNITS/MM\nFEDRAT/9\nFROBNI/1\nGOTO/1,2,3\nGOTO/1,2,4\n";
+    fs::write(within.join("a.cl"), text).expect("written");
+    fs::write(within.join("shop.toml"), "[words]\nFROBNI = \"comment\"\n").expect("written");
+    let output = run(&["compile", "a.cl", "--to", "sinumerik", "-o", "A.MPF"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("a.cl:3:1") && !within.join("A.MPF").exists(), "{}", stderr(&output));
+    assert_eq!(code(&run(&["compile", "a.cl", "--to", "sinumerik", "--lenient", "-o", "A.MPF"])), 0);
+    let output = run(&["compile", "a.cl", "--to", "sinumerik", "--words", "shop.toml"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("; FROBNI 1\n"), "{}", stderr(&output));
+    // Understood, and not compiled: the answer is no.
+    fs::write(within.join("a.cl"), "FEDRAT/9\nGOTO/1,2,3\nCUTCOM/LEFT\nGOTO/1,2,4\n").expect("written");
+    let output = run(&["compile", "a.cl", "--to", "sinumerik", "-o", "B.MPF"]);
+    assert_eq!(code(&output), 1);
+    assert!(stderr(&output).contains("cutter-compensation") && !within.join("B.MPF").exists());
+    // Bytes that are no text at all.
+    let bytes: Vec<u8> = (0..4096u32).map(|i| (i * 7919 % 256) as u8).collect();
+    fs::write(within.join("b.cl"), &bytes).expect("written");
+    for from in
+        [&["compile", "b.cl", "--to", "mazak"][..], &["compile", "b.cl", "--from", "apt", "--to", "mazak"]]
+    {
+        let output = run(from);
+        assert_eq!(code(&output), 2, "{}", stderr(&output));
+        assert!(output.stdout.is_empty());
+    }
+}

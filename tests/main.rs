@@ -2,6 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `apt` | CL data of CAM systems, from their text to proved programs |
 //! | `golden` | inputs and every machine's output, side by side, as bytes |
 //! | `errors` | bad inputs and their rendered diagnostics |
 //! | `paper` | the table of the paper, row by row |
@@ -18,6 +19,7 @@
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
+mod apt;
 mod cli;
 mod damage;
 mod errors;

@@ -22,9 +22,9 @@ impl Check {
                 console.diagnostics(&reading.warnings, sources);
                 console.diagnostics(&legal.warnings, sources);
             }
-            Understood::Input(intent) => {
+            Understood::Input(language, intent) => {
                 console.diagnostics(&intent.warnings, sources);
-                if !intent.is_complete() {
+                if language.grammar != "apt" && !intent.is_complete() {
                     let note = Diagnostic::note(
                         "process-incomplete",
                         "a program would need feed and retract under [process]",

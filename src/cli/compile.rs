@@ -4,7 +4,7 @@ use super::io::{self, Console};
 use super::{MethodName, machine, motion, tolerance};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::front::{self, Language};
-use splinepost::source::{Source, Sources};
+use splinepost::source::{Encoding, Source, SourceId, Sources};
 use splinepost::summary::Summary;
 use splinepost::{Options, diagnostic::Diagnostic};
 
@@ -31,6 +31,11 @@ pub(crate) struct Compile {
     /// The input's language, where it cannot be told from its text
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
+    /// Write to this file which lines of the input each block came from (JSON)
+    #[arg(long, value_name = "FILE", conflicts_with = "no_verify")]
+    map: Option<String>,
+    #[command(flatten)]
+    reading: Reading,
     /// Write the program without its proof, and say so in it
     #[arg(long)]
     no_verify: bool,
@@ -39,7 +44,8 @@ pub(crate) struct Compile {
 impl Compile {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
-        *sources = Sources::new(io::read_source(&self.input)?);
+        *sources = Sources::new(io::read_input(&self.input)?);
+        self.reading.tell(sources)?;
         let machine = machine(&self.to, sources)?;
         if let Some(output) = &self.output
             && (io::same_file(output, &self.input) || io::same_file(output, &self.to))
@@ -67,6 +73,12 @@ impl Compile {
             Some(path) if path != "-" => io::write_file(path, &output.text)?,
             Some(_) | None => io::print(&output.text)?,
         }
+        if let (Some(path), Some(report)) = (&self.map, &output.report) {
+            let machine = machine.with_axes(&output.intent.program.axes)?;
+            let reading = (machine.dialect.read)(&output.text, SourceId::PROGRAM, &machine)?.value;
+            let map = splinepost::map::json(&output.intent, report, &reading, &output.text, sources);
+            io::write_file(path, &map)?;
+        }
         console.diagnostics(&output.warnings, sources);
         console.summary(&Summary::new(
             &output.intent,
@@ -81,16 +93,44 @@ impl Compile {
     }
 }
 
-/// The language that `--from` names, or that the input looks like.
+/// The language that `--from` names, or that the input looks like; one that does not read Windows-1252 refuses it.
 pub(super) fn language(from: Option<&str>, sources: &Sources) -> Result<&'static Language, Diagnostics> {
-    let input = sources.get(splinepost::source::SourceId::INPUT);
-    match from {
+    let empty = Source::new("", "");
+    let input = sources.get(SourceId::INPUT).unwrap_or(&empty);
+    let language = match from {
         Some(name) => front::find(name).ok_or_else(|| {
             let names: Vec<&str> = front::LANGUAGES.iter().map(|language| language.name).collect();
             Diagnostic::error("language-unknown", format!("`{name}` is not a language"))
                 .hint(format!("known are {}", names.join(", ")))
-                .into()
-        }),
-        None => front::detect(input.unwrap_or(&Source::new("", ""))),
+        })?,
+        None => front::detect(input)?,
+    };
+    if input.encoding == Encoding::Windows1252 && !language.windows_1252 {
+        let line = input.text.lines().position(|line| !line.is_ascii()).unwrap_or(0) + 1;
+        return Err(io::not_utf8(&input.name, line));
+    }
+    Ok(language)
+}
+
+/// How CL data is read.
+#[derive(clap::Args, Debug)]
+pub(super) struct Reading {
+    /// A table of words for CL data, beside the built-in ones (TOML: [words], [cycles], circle)
+    #[arg(long, value_name = "FILE")]
+    words: Option<String>,
+    /// Leave out words of CL data that are not understood, with a warning
+    #[arg(long)]
+    lenient: bool,
+}
+
+impl Reading {
+    /// Tells it to whoever reads the sources.
+    pub(super) fn tell(&self, sources: &mut Sources) -> Result<(), Diagnostics> {
+        sources.lenient = self.lenient;
+        if let Some(path) = &self.words {
+            let source = io::read_source(path)?;
+            sources.words = Some(sources.push(source));
+        }
+        Ok(())
     }
 }

@@ -21,7 +21,10 @@ impl Dump {
                 console.diagnostics(&reading.warnings, sources);
                 io::print(&dump::decimals(&reading.value.decimals))
             }
-            Understood::Input(intent) => io::print(&dump::intent(&intent)),
+            Understood::Input(_, intent) => {
+                console.diagnostics(&intent.warnings, sources);
+                io::print(&dump::intent(&intent))
+            }
         }
     }
 }

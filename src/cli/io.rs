@@ -86,14 +86,20 @@ fn read_bytes(path: &str) -> Result<Vec<u8>, Diagnostics> {
 pub(crate) fn read_text(path: &str) -> Result<String, Diagnostics> {
     String::from_utf8(read_bytes(path)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..at].split(|b| *b == b'\n').count();
-        Diagnostic::error(
-            "not-utf8",
-            format!("{path} is not UTF-8: line {line} has a byte that cannot be read"),
-        )
-        .hint("save the file as UTF-8")
-        .into()
+        not_utf8(path, error.as_bytes()[..at].split(|b| *b == b'\n').count())
     })
+}
+
+/// What is wrong with a text that is not UTF-8, from this line on.
+pub(crate) fn not_utf8(path: &str, line: usize) -> Diagnostics {
+    let message = format!("{path} is not UTF-8: line {line} has a byte that cannot be read");
+    Diagnostic::error("not-utf8", message).hint("save the file as UTF-8").into()
+}
+
+/// An input, whose language decides later what a text that is not UTF-8 is.
+pub(crate) fn read_input(path: &str) -> Result<Source, Diagnostics> {
+    let name = if path == "-" { "<stdin>" } else { path };
+    Ok(Source::decode(name, read_bytes(path)?))
 }
 
 /// A file as a named text.

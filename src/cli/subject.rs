@@ -1,8 +1,10 @@
 //! What `check` and `dump` look at: an input, or a program with the machine that it was written for.
 
+use super::compile::Reading as CommandReading;
 use super::{io, machine};
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Warned};
 use splinepost::dialect::Reading;
+use splinepost::front::Language;
 use splinepost::ir::Intent;
 use splinepost::machine::Machine;
 use splinepost::source::{SourceId, Sources};
@@ -15,21 +17,24 @@ pub(super) struct Subject {
     /// A machine: the input is then an NC program for it, unless --from says otherwise
     #[arg(long, value_name = "MACHINE")]
     to: Option<String>,
-    /// The input's language: cutter, job, or nc with --to
+    /// The input's language: cutter, job, apt, catia, creo, nx, solidworks, fusion, iso, or nc with --to
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
+    #[command(flatten)]
+    reading: CommandReading,
 }
 
 /// A file that was understood.
 pub(super) enum Understood {
     Program(Box<Machine>, Warned<Reading>),
-    Input(Box<Intent>),
+    Input(&'static Language, Box<Intent>),
 }
 
 impl Subject {
     /// Reads it.
     pub(super) fn understand(&self, sources: &mut Sources) -> Result<Understood, Diagnostics> {
-        *sources = Sources::new(io::read_source(&self.input)?);
+        *sources = Sources::new(io::read_input(&self.input)?);
+        self.reading.tell(sources)?;
         if let Some(to) = self.machine_of_program(sources)? {
             let machine = machine(to, sources)?;
             let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
@@ -37,7 +42,7 @@ impl Subject {
             return Ok(Understood::Program(Box::new(machine), reading));
         }
         let language = super::compile::language(self.from.as_deref(), sources)?;
-        (language.understand)(sources).map(|intent| Understood::Input(Box::new(intent)))
+        (language.understand)(sources).map(|intent| Understood::Input(language, Box::new(intent)))
     }
 
     /// The machine of an NC program: that is what the file is where `--from nc` says so, or where a machine is named and

@@ -1,6 +1,6 @@
 //! `splinepost verify`: proof on a program that already exists.
 
-use super::compile::language;
+use super::compile::{Reading, language};
 use super::io::{self, Console};
 use super::{MethodName, machine, tolerance};
 use splinepost::Options;
@@ -28,12 +28,15 @@ pub(crate) struct Verify {
     /// The input's language, where it cannot be told from its text
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Verify {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
-        *sources = Sources::new(io::read_source(&self.against)?);
+        *sources = Sources::new(io::read_input(&self.against)?);
+        self.reading.tell(sources)?;
         let program = io::read_source(&self.program)?;
         let text = program.text.clone();
         let id = sources.push(program);

@@ -47,6 +47,7 @@ impl By {
                 | Step::Coolant
                 | Step::Home(_)
                 | Step::Shift(_)
+                | Step::Auxiliary(_)
                 | Step::Rapid(_)
                 | Step::Cut(_),
                 _,
@@ -73,9 +74,22 @@ impl By {
                     && a.points.len() == b.points.len()
                     && a.points.iter().zip(&b.points).all(|(a, b)| self.units(a, b))
             }
-            (Written::Lines(_) | Written::Through(..) | Written::Polynomial(_) | Written::Nurbs(_), _) => {
-                false
+            (Written::Arc(a), Written::Arc(b)) => {
+                let [u, v, _] = a.plane.axes();
+                (a.plane, a.sense) == (b.plane, b.sense)
+                    && self.units(&a.start, &b.start)
+                    && self.units(&a.end, &b.end)
+                    && a.center[0] + self.by[u] == b.center[0]
+                    && a.center[1] + self.by[v] == b.center[1]
             }
+            (
+                Written::Lines(_)
+                | Written::Arc(_)
+                | Written::Through(..)
+                | Written::Polynomial(_)
+                | Written::Nurbs(_),
+                _,
+            ) => false,
         }
     }
 

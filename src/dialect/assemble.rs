@@ -220,6 +220,7 @@ impl<'m> Assembler<'m> {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_) => None,
         })
@@ -308,6 +309,7 @@ impl<'m> Assembler<'m> {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_) => None,
         });

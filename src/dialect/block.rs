@@ -242,6 +242,7 @@ pub fn expected_size(decimals: &crate::ir::Decimals) -> usize {
     let axes = decimals.program.axes.count();
     let steps = decimals.program.steps.iter().map(|located| match located.step.cut().map(|cut| &cut.curve) {
         Some(Written::Lines(points) | Written::Through(_, points)) => points.count() * (10 + 11 * axes),
+        Some(Written::Arc(_)) => 80,
         Some(Written::Polynomial(polynomial)) => polynomial.blocks.len() * (20 + 60 * axes),
         Some(Written::Nurbs(nurbs)) => nurbs.points.len() * (30 + 14 * axes),
         None => 40,

@@ -3,7 +3,7 @@
 use super::assemble::Assembler;
 use super::parts::home_word;
 use crate::decimal::{Decimal, read_decimal};
-use crate::ir::{Shift, Step};
+use crate::ir::{Auxiliary, Shift, Step};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 use crate::source::Span;
@@ -16,6 +16,8 @@ pub struct Frame<'m> {
     /// The footer and the closing lines.
     end: Vec<&'m Template>,
     ended: usize,
+    /// Lines of the end that may also be switches before it.
+    doubtful: Vec<(Auxiliary<Decimal>, Span)>,
     /// The template lines that must follow, once the first of several was met.
     pending: Vec<&'m Template>,
     shifting: Option<Shifting>,
@@ -49,6 +51,7 @@ impl<'m> Frame<'m> {
             header: 0,
             end: frame.footer.iter().chain(&frame.close).collect(),
             ended: 0,
+            doubtful: Vec::new(),
             pending: Vec::new(),
             shifting: None,
             assign: Template(machine.dialect.parameter.assign.to_owned()),
@@ -68,9 +71,21 @@ impl<'m> Frame<'m> {
     }
 
     /// The lists of lines that may stand anywhere behind the header.
-    fn lists(&self) -> [&'m [Template]; 6] {
+    fn lists(&self) -> [&'m [Template]; 11] {
         let frame = &self.machine.frame;
-        [&frame.tool_spindle, &frame.tool, &frame.spindle, &frame.coolant, &frame.home, &frame.shift]
+        [
+            &frame.tool_spindle,
+            &frame.tool,
+            &frame.spindle,
+            &frame.coolant,
+            &frame.home,
+            &frame.coolant_stop,
+            &frame.spindle_stop,
+            &frame.stop,
+            &frame.optional_stop,
+            &frame.dwell,
+            &frame.shift,
+        ]
     }
 
     /// Whether a line could be one of the fixed lines that come after the header, so that a spline before it has ended.
@@ -123,18 +138,41 @@ impl<'m> Frame<'m> {
         self.started = true;
         if 0 < self.ended {
             match self.end.get(self.ended).copied() {
-                Some(template) if self.take(template, text, span, true, assembler) => self.ended += 1,
-                Some(template) => assembler.error("footer-differs", here(template), range),
-                None => assembler.error("text-after-end", "text after the end of the program", range),
+                Some(template) if self.take(template, text, span, true, assembler) => {
+                    self.doubt(text, span);
+                    self.ended += 1;
+                    return Met::Fixed;
+                }
+                // It was no end: what stands there stood for itself.
+                _ if self.is_in_doubt() => self.believe(assembler),
+                Some(template) => {
+                    assembler.error("footer-differs", here(template), range);
+                    return Met::Fixed;
+                }
+                None => {
+                    assembler.error("text-after-end", "text after the end of the program", range);
+                    return Met::Fixed;
+                }
             }
+        }
+        if let Some(template) = self.end.first().copied()
+            && begins_alike(template, text)
+            && self.switch(text).is_some()
+            && self.take(template, text, span, true, assembler)
+        {
+            self.doubt(text, span);
+            self.ended = 1;
             return Met::Fixed;
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins like one; a byte decides.
-        for lines in &self.lists()[..5] {
+        for lines in &self.lists()[..10] {
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
                 && self.take(template, text, span, true, assembler)
             {
+                if let Some(switch) = self.switch(text) {
+                    assembler.step(Step::Auxiliary(switch), span);
+                }
                 self.pending = lines[1..].iter().collect();
                 return Met::Fixed;
             }
@@ -171,6 +209,37 @@ impl<'m> Frame<'m> {
             let message = format!("the text ends where the machine file has `{}`", template.0);
             assembler.error("frame-line", message, end..end);
         }
+    }
+
+    /// Which switch a line is.
+    fn switch(&self, text: &str) -> Option<Auxiliary<Decimal>> {
+        let all = [Auxiliary::CoolantStop, Auxiliary::SpindleStop, Auxiliary::Stop, Auxiliary::OptionalStop];
+        all.into_iter().find(|switch| {
+            let first = self.machine.frame.auxiliary(switch).first();
+            first.is_some_and(|template| begins_alike(template, text) && template.matched(text).is_some())
+        })
+    }
+
+    /// Notes that a line of the end may also be a switch before it, as M5.
+    fn doubt(&mut self, text: &str, span: Span) {
+        if self.doubtful.len() == self.ended
+            && let Some(switch) = self.switch(text)
+        {
+            self.doubtful.push((switch, span));
+        }
+    }
+
+    /// Whether all that was met of the end may also be switches before it.
+    pub fn is_in_doubt(&self) -> bool {
+        0 < self.ended && self.doubtful.len() == self.ended
+    }
+
+    /// Takes what was met of the end as switches.
+    fn believe(&mut self, assembler: &mut Assembler<'m>) {
+        for (switch, span) in std::mem::take(&mut self.doubtful) {
+            assembler.step(Step::Auxiliary(switch), span);
+        }
+        self.ended = 0;
     }
 
     /// Takes a line that is a template filled in: its tool, spindle and home become steps, its name the program's.
@@ -218,6 +287,10 @@ impl<'m> Frame<'m> {
                     };
                     assembler.home(axis, span);
                 }
+                "seconds" => match whole_decimal(value) {
+                    Some(seconds) => assembler.step(Step::Auxiliary(Auxiliary::Dwell(seconds)), span),
+                    None => return false,
+                },
                 _ => match read_decimal(value.as_bytes(), false) {
                     Ok((rpm, length)) if length == value.len() => assembler.step(Step::Spindle(rpm), span),
                     _ => return false,

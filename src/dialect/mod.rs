@@ -5,6 +5,7 @@
 //!
 //! | module | what |
 //! |---|---|
+//! | [`arc`] | G2 and G3 with I J K |
 //! | [`assemble`] | moves read one by one become a program |
 //! | [`block`] | lines, numbers and words that all dialects share |
 //! | [`frame`] | the fixed lines round a program, read back |
@@ -15,6 +16,7 @@
 //! | [`iso`] | Mazak G06.1, G06.2 |
 
 mod alike;
+pub mod arc;
 pub mod assemble;
 pub mod block;
 pub mod frame;
@@ -25,6 +27,7 @@ pub mod parts;
 pub mod sinumerik;
 
 use crate::diagnostic::{Diagnostics, Warned};
+use crate::geom::arc::Plane;
 use crate::ir::{Decimals, ThroughKind};
 use crate::machine::Machine;
 use crate::pass::check::Legal;
@@ -49,6 +52,8 @@ pub struct Dialect {
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
     pub round: Round,
+    /// Whether it has a word for an arc in this plane, and for one that leaves the plane as a helix; others become lines.
+    pub takes_arc: fn(Plane, bool) -> bool,
     /// Spells a legal program.
     pub write: fn(&Legal, &Machine) -> String,
     /// Reads a program.

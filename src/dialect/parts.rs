@@ -5,8 +5,8 @@
 
 use super::alike;
 use super::modal::Modal;
-use crate::decimal::Decimal;
-use crate::ir::{Cut, Decimals, Located, Shift, Step, Written};
+use crate::decimal::{Decimal, Spelling};
+use crate::ir::{Auxiliary, Cut, Decimals, Located, Shift, Step, Written};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 
@@ -159,6 +159,16 @@ impl<'p> Walk<'p, '_> {
                     self.parts.push(Part::Spindle);
                 }
                 Step::Coolant => self.fill(&frame.coolant, &[]),
+                Step::Auxiliary(auxiliary) => {
+                    let seconds = match auxiliary {
+                        Auxiliary::Dwell(seconds) => unsigned(*seconds, self.machine),
+                        Auxiliary::CoolantStop
+                        | Auxiliary::SpindleStop
+                        | Auxiliary::Stop
+                        | Auxiliary::OptionalStop => String::new(),
+                    };
+                    self.fill(frame.auxiliary(auxiliary), &[("seconds", &seconds)]);
+                }
                 Step::Home(axis) => {
                     let word = home_word(*axis, self.machine);
                     self.fill(&frame.home, &[("home", &word)]);
@@ -168,9 +178,12 @@ impl<'p> Walk<'p, '_> {
                     self.shift(shifts);
                     let ends = |located: &Located<Decimal, Written>| match located.step {
                         Step::Comment(_) | Step::Shift(_) | Step::Home(_) => true,
-                        Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Rapid(_) | Step::Cut(_) => {
-                            false
-                        }
+                        Step::Tool(_)
+                        | Step::Spindle(_)
+                        | Step::Coolant
+                        | Step::Auxiliary(_)
+                        | Step::Rapid(_)
+                        | Step::Cut(_) => false,
                     };
                     let length = rest.iter().position(ends).unwrap_or(rest.len());
                     let cuts = rest[..length].iter().any(|located| located.step.cut().is_some());
@@ -248,6 +261,13 @@ impl<'p> Walk<'p, '_> {
 pub fn spelled(value: Decimal, machine: &Machine) -> String {
     let mut out = Vec::new();
     value.write(&mut out, machine.text.spelling());
+    String::from_utf8(out).unwrap_or_default()
+}
+
+/// A number that is never negative: it has no sign.
+fn unsigned(value: Decimal, machine: &Machine) -> String {
+    let mut out = Vec::new();
+    value.write(&mut out, Spelling { sign_always: false, ..machine.text.spelling() });
     String::from_utf8(out).unwrap_or_default()
 }
 

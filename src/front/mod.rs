@@ -2,9 +2,11 @@
 //!
 //! | module | input |
 //! |---|---|
+//! | [`apt`] | CL data of CATIA, NX, Creo, SolidWorks CAM, Fusion |
 //! | [`cutter`] | a conical cutter as its drawing states it |
 //! | [`job`] | curves, with feed and tool |
 
+pub mod apt;
 pub mod cutter;
 pub mod job;
 
@@ -24,6 +26,10 @@ pub struct Language {
     pub understand: fn(&Sources) -> Result<Intent, Diagnostics>,
     /// Whether a text looks like it.
     pub recognise: fn(&str) -> bool,
+    /// Whether a text that is not UTF-8 is read as Windows-1252.
+    pub windows_1252: bool,
+    /// Its grammar, in `grammar/`.
+    pub grammar: &'static str,
 }
 
 impl std::fmt::Debug for Language {
@@ -40,6 +46,8 @@ pub const LANGUAGES: &[Language] = &[
         parse: |sources| cutter::parse_program(input(sources)?, SourceId::INPUT),
         understand: |sources| cutter::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
         recognise: |text| has_table(text, "[cutter]"),
+        windows_1252: false,
+        grammar: "cutter",
     },
     Language {
         name: "job",
@@ -47,7 +55,26 @@ pub const LANGUAGES: &[Language] = &[
         parse: |sources| job::parse_program(input(sources)?, SourceId::INPUT),
         understand: |sources| job::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
         recognise: |text| has_table(text, "[[curve]]") || has_table(text, "[curve]"),
+        windows_1252: false,
+        grammar: "job",
     },
+    Language {
+        name: "apt",
+        about: "CL data of the CAM system that it looks like",
+        parse: apt::parse,
+        understand: apt::parse,
+        recognise: apt::recognise,
+        windows_1252: true,
+        grammar: "apt",
+    },
+    cl_data("catia", "CL data of CATIA V5, 3DEXPERIENCE or Mastercam", |sources| {
+        apt::parse_as(sources, Some("catia"))
+    }),
+    cl_data("creo", "CL data of Creo", |sources| apt::parse_as(sources, Some("creo"))),
+    cl_data("nx", "CL data of NX", |sources| apt::parse_as(sources, Some("nx"))),
+    cl_data("solidworks", "CL data of SolidWorks CAM", |sources| apt::parse_as(sources, Some("solidworks"))),
+    cl_data("fusion", "CL data of Fusion or hyperMILL", |sources| apt::parse_as(sources, Some("fusion"))),
+    cl_data("iso", "CL data after ISO 3592 and 4343", |sources| apt::parse_as(sources, Some("iso"))),
 ];
 
 fn input(sources: &Sources) -> Result<&Source, Diagnostics> {
@@ -57,6 +84,23 @@ fn input(sources: &Sources) -> Result<&Source, Diagnostics> {
 /// Whether a line of the text begins a table.
 fn has_table(text: &str, table: &str) -> bool {
     text.trim_start_matches('\u{feff}').lines().any(|line| line.trim_start().starts_with(table))
+}
+
+/// CL data of one CAM system; its text is recognised as `apt`, which finds the system.
+const fn cl_data(
+    name: &'static str,
+    about: &'static str,
+    parse: fn(&Sources) -> Result<Intent, Diagnostics>,
+) -> Language {
+    Language {
+        name,
+        about,
+        parse,
+        understand: parse,
+        recognise: |_| false,
+        windows_1252: true,
+        grammar: "apt",
+    }
 }
 
 /// The language of a name.

@@ -8,6 +8,7 @@
 //! | [`elementary`] | the only transcendental functions of the project |
 //! | [`logcurve`] | the path of a conical cutter, A = a ln(1 + bX) |
 //! | [`oddeven`] | its points by the odd-even third-order steps |
+//! | [`arc`] | arcs and helices, and how far a control may be from one |
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
@@ -18,6 +19,7 @@
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
 //! | [`follow`] | the same for any two paths of pieces |
 
+pub mod arc;
 pub mod bernstein;
 pub mod bezier;
 pub mod chain;

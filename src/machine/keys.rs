@@ -77,6 +77,11 @@ pub const KEYS: &[Key] = &[
             Key::value("spindle"),
             Key::value("tool_spindle"),
             Key::value("coolant"),
+            Key::value("coolant_stop"),
+            Key::value("spindle_stop"),
+            Key::value("stop"),
+            Key::value("optional_stop"),
+            Key::value("dwell"),
             Key::value("shift"),
             Key::value("footer"),
             Key::value("subprograms"),
@@ -296,6 +301,21 @@ pub(super) struct ProgramFile {
     /// The coolant's start.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) coolant: Option<Vec<Spanned<String>>>,
+    /// The coolant's end, between moves.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) coolant_stop: Option<Vec<Spanned<String>>>,
+    /// The spindle's stop, between moves.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) spindle_stop: Option<Vec<Spanned<String>>>,
+    /// A stop of the program until the operator goes on.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) stop: Option<Vec<Spanned<String>>>,
+    /// A stop where the operator asked for it.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) optional_stop: Option<Vec<Spanned<String>>>,
+    /// A dwell of {seconds}.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) dwell: Option<Vec<Spanned<String>>>,
     /// A work offset; {words}: the axis words. A line with {i} stands once for each axis, {i} counting from 1.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) shift: Option<Vec<Spanned<String>>>,

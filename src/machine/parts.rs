@@ -3,6 +3,7 @@
 use super::template::Template;
 use crate::decimal::Spelling;
 use crate::dialect::{Dialect, Motion};
+use crate::ir::Auxiliary;
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
 
@@ -203,6 +204,16 @@ pub struct Frame {
     pub tool_spindle: Vec<Template>,
     /// The coolant's start.
     pub coolant: Vec<Template>,
+    /// Its end, between moves.
+    pub coolant_stop: Vec<Template>,
+    /// The spindle's stop, between moves.
+    pub spindle_stop: Vec<Template>,
+    /// A stop of the program.
+    pub stop: Vec<Template>,
+    /// A stop where the operator asked for it.
+    pub optional_stop: Vec<Template>,
+    /// A dwell.
+    pub dwell: Vec<Template>,
     /// A work offset.
     pub shift: Vec<Template>,
     /// After the last step.
@@ -217,4 +228,17 @@ pub struct Frame {
     pub end: Template,
     /// The last lines of the text, behind subprograms.
     pub close: Vec<Template>,
+}
+
+impl Frame {
+    /// The lines of a switch or a dwell.
+    pub fn auxiliary<N>(&self, auxiliary: &Auxiliary<N>) -> &[Template] {
+        match auxiliary {
+            Auxiliary::CoolantStop => &self.coolant_stop,
+            Auxiliary::SpindleStop => &self.spindle_stop,
+            Auxiliary::Stop => &self.stop,
+            Auxiliary::OptionalStop => &self.optional_stop,
+            Auxiliary::Dwell(_) => &self.dwell,
+        }
+    }
 }

@@ -52,7 +52,8 @@ fn moving(pieces: &[Bezier]) -> Vec<usize> {
 /// # Errors
 /// The reason, as part of a sentence.
 pub fn exact(curve: &Curve, form: Form, frame: &Frame<'_>) -> Result<(), String> {
-    let straight = matches!(curve, Curve::Lines(_) | Curve::Through(..) | Curve::Logarithmic(_));
+    let straight =
+        matches!(curve, Curve::Lines(_) | Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_));
     if straight {
         return Ok(());
     }
@@ -80,9 +81,11 @@ pub fn exact(curve: &Curve, form: Form, frame: &Frame<'_>) -> Result<(), String>
         }
         Form::Nurbs => match curve {
             Curve::Nurbs(nurbs) => spline::adapted(nurbs.clone(), frame.machine).map(|_| ()),
-            Curve::Polynomial(_) | Curve::Lines(_) | Curve::Through(..) | Curve::Logarithmic(_) => {
-                spline::joined(pieces, true, axes, frame.machine).map(|_| ())
-            }
+            Curve::Polynomial(_)
+            | Curve::Lines(_)
+            | Curve::Arc(_)
+            | Curve::Through(..)
+            | Curve::Logarithmic(_) => spline::joined(pieces, true, axes, frame.machine).map(|_| ()),
         },
     }
 }
@@ -99,7 +102,7 @@ pub fn approximate(
     tolerance: f64,
     may_be_exact: bool,
 ) -> Result<Curve, Diagnostic> {
-    if matches!(curve, Curve::Lines(_) | Curve::Through(..) | Curve::Logarithmic(_)) {
+    if matches!(curve, Curve::Lines(_) | Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) {
         return Ok(curve.clone());
     }
     let spline = matches!(form, Form::Polynomial { .. } | Form::Nurbs);
@@ -154,7 +157,7 @@ pub fn notes(intent: &Intent, form: Form, machine: &Machine, exact_was_tried: bo
     let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
     for located in &intent.program.steps {
         let Step::Cut(Cut { role: Role::Path, curve, .. }) = &located.step else { continue };
-        if matches!(curve, Curve::Lines(_) | Curve::Through(..) | Curve::Logarithmic(_)) {
+        if matches!(curve, Curve::Lines(_) | Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) {
             continue;
         }
         let reason = match exact(curve, form, &frame) {

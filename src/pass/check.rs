@@ -4,7 +4,7 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Dialect, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Decimals, PolynomialBlock, Units, Written};
+use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written};
 use crate::machine::Machine;
 use crate::pass::{limits, range};
 use crate::units::{Axis, DEGREES, MAX_AXES, Position};
@@ -37,13 +37,23 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
     let mut coefficient_digits = 0;
     let mut splines_move: Vec<Axis> = Vec::new();
     for located in &decimals.program.steps {
+        if let Step::Auxiliary(auxiliary) = &located.step
+            && machine.frame.auxiliary(auxiliary).is_empty()
+        {
+            let message = format!("machine `{}` has no lines for {}", machine.name, auxiliary.key());
+            found.push(
+                Diagnostic::refusal("auxiliary-missing", message)
+                    .at(located.span, "")
+                    .hint(format!("state them in a machine file: [program] {} = [...]", auxiliary.key())),
+            );
+        }
         let Some(cut) = located.step.cut() else { continue };
         match form(&decimals, &cut.curve, machine.dialect) {
             Ok(needed) => coefficient_digits = coefficient_digits.max(needed),
             Err(refused) => found.push(refused.at(located.span, "")),
         }
         let moved: Vec<usize> = match &cut.curve {
-            Written::Lines(_) => Vec::new(),
+            Written::Lines(_) | Written::Arc(_) => Vec::new(),
             Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => moving(&cut.curve),
         };
         for axis in moved {
@@ -104,6 +114,11 @@ const CLOSING_AXES: usize = 5;
 fn form(decimals: &Decimals, curve: &Written, dialect: &Dialect) -> Result<usize, Diagnostic> {
     let (found, what) = match curve {
         Written::Lines(_) => (dialect.motion_of(Form::Lines), "straight lines"),
+        Written::Arc(arc) => {
+            let [.., w] = arc.plane.axes();
+            let taken = (dialect.takes_arc)(arc.plane, arc.start[w] != arc.end[w]);
+            (dialect.motion_of(Form::Lines).filter(|_| taken), "arcs of this kind")
+        }
         Written::Polynomial(_) => {
             let polynomial =
                 dialect.motions.iter().find(|motion| matches!(motion.form, Form::Polynomial { .. }));
@@ -193,6 +208,12 @@ pub fn moving(curve: &Written) -> Vec<usize> {
         Written::Lines(line) | Written::Through(_, line) => {
             differ(&line.start, &mut line.units.chunks_exact(line.stride))
         }
+        Written::Arc(arc) => {
+            let [u, v, _] = arc.plane.axes();
+            let mut moved = differ(&arc.start, &mut [arc.end.as_slice()].into_iter());
+            (moved[u], moved[v]) = (true, true);
+            moved
+        }
         Written::Nurbs(nurbs) => {
             differ(&nurbs.points[0], &mut nurbs.points.iter().map(<[i64; MAX_AXES]>::as_slice))
         }
@@ -217,7 +238,7 @@ fn joint_angle(decimals: &Decimals, curve: &Written) -> f64 {
     let direction = |from: &Position, to: &Position| -> Position { std::array::from_fn(|i| to[i] - from[i]) };
     let dot = |a: &Position, b: &Position| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut worst, mut last) = (0.0f64, None::<Bezier>);
-    if matches!(curve, Written::Lines(_) | Written::Through(..)) {
+    if matches!(curve, Written::Lines(_) | Written::Arc(_) | Written::Through(..)) {
         return worst;
     }
     limits::each_piece(decimals, curve, |piece| {

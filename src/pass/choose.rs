@@ -20,10 +20,16 @@ pub fn choose(
     tolerance: f64,
 ) -> Result<Warned<&'static Motion>, Diagnostics> {
     let mut warnings = Diagnostics::new();
+    // Where nothing is left to choose, a million points are not counted.
+    if paths(intent).next().is_none()
+        && let Some(motion) = machine.dialect.motion_of(Form::Lines)
+    {
+        return Ok(Warned { value: motion, warnings });
+    }
     let blocked = machine.axes_without_spline(&moving_axes(intent));
     let straight = paths(intent).all(|curve| match curve {
         Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
-        Curve::Lines(_) => true,
+        Curve::Lines(_) | Curve::Arc(_) => true,
         Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
     });
     let winds = place::winds(intent, machine);
@@ -92,6 +98,10 @@ pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
                 [true, c.y_slope() != 0.0, c.z_slope() != 0.0, c.k() != 0.0].get(i).copied().unwrap_or(false)
             }
             Curve::Lines(line) | Curve::Through(_, line) => line.points().any(|p| p[i] != line.start[i]),
+            Curve::Arc(arc) => {
+                let (low, high) = arc.range();
+                low[i] != high[i]
+            }
             Curve::Polynomial(pieces) => {
                 pieces.iter().any(|piece| piece.control_points().iter().any(|p| p[i] != piece.points[0][i]))
             }
@@ -128,6 +138,7 @@ pub fn count(program: &Program<f64, Curve>) -> usize {
         .map(|cut| match &cut.curve {
             Curve::Lines(line) | Curve::Through(_, line) => line.count(),
             Curve::Polynomial(pieces) => pieces.len(),
+            Curve::Arc(_) => 1,
             Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
             Curve::Logarithmic(_) => 0,
         })

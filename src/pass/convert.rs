@@ -44,6 +44,7 @@ pub fn convert(
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_)) => step,
         };
@@ -54,7 +55,7 @@ pub fn convert(
 
 fn to_form(curve: Curve, form: Form, axes: &Axes, machine: &Machine) -> Result<Curve, String> {
     match (curve, form) {
-        (curve @ Curve::Lines(_), Form::Lines) => Ok(curve),
+        (curve @ Curve::Lines(_), Form::Lines) | (curve @ Curve::Arc(_), _) => Ok(curve),
         (curve @ Curve::Polynomial(_), Form::Polynomial { .. }) => Ok(curve),
         (Curve::Through(_, line), Form::Through(kind)) | (Curve::Lines(line), Form::Through(kind)) => {
             Ok(Curve::Through(kind, line))

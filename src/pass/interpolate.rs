@@ -63,6 +63,15 @@ pub fn interpolate(
                     span: located.span,
                 }));
             }
+            Step::Cut(Cut { feed, role, curve: curve @ Curve::Arc(arc) }) => {
+                let curve = if (machine.dialect.takes_arc)(arc.plane(), arc.is_helix()) {
+                    curve.clone()
+                } else {
+                    Curve::Lines(super::arcs::lines(arc, tolerance))
+                };
+                let step = Step::Cut(Cut { feed: *feed, role: *role, curve });
+                steps.push(Located { step, span: located.span });
+            }
             Step::Cut(Cut { feed, role: Role::Path, curve }) => {
                 let axes = &intent.program.axes;
                 let feed = feed.map(|feed| of_curve(curve, feed, axes, machine, intent.radius()).0);
@@ -79,6 +88,7 @@ pub fn interpolate(
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_)
             | Step::Cut(_)) => steps.push(Located { step: step.clone(), span: located.span }),
         }
@@ -105,7 +115,7 @@ fn reversed(curve: Curve) -> Curve {
         Curve::Through(kind, line) => Curve::Through(kind, line.reversed()),
         Curve::Polynomial(pieces) => Curve::Polynomial(pieces.iter().rev().map(Bezier::reversed).collect()),
         // `interpolate` makes none of these.
-        Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
+        Curve::Arc(_) | Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
     }
 }
 

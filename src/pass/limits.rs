@@ -19,7 +19,7 @@ use crate::ir::{Cut, Decimals, Written, WrittenPoints};
 use crate::machine::{Machine, RotaryFeed};
 use crate::source::Span;
 use crate::units::{Kind, MAX_AXES, Position};
-use crate::verify::to_nurbs;
+use crate::verify::{to_arc, to_nurbs};
 
 /// Each piece is looked at in 2⁵ parts.
 const HALVINGS: u32 = 5;
@@ -137,6 +137,22 @@ fn figures(decimals: &Decimals, machine: &Machine, wanted: &[usize]) -> (Figures
             }
             continue;
         }
+        if let Written::Arc(arc) = curve {
+            let radius = to_arc(decimals, arc).map_or(f64::INFINITY, |arc| arc.radius());
+            let [u, v, w] = arc.plane.axes();
+            for &axis in wanted {
+                // Each axis of the plane may have the whole of F, and v²/R towards the centre.
+                let at = decimals.position(&arc.start);
+                let most = |amount| Most { amount, at, span };
+                if axis == u || axis == v {
+                    take(&mut speeds, axis, most(feed));
+                    take(&mut accelerations, axis, most((feed / 60.0) * (feed / 60.0) / radius));
+                } else if axis == w && arc.start[w] != arc.end[w] {
+                    take(&mut speeds, axis, most(feed));
+                }
+            }
+            continue;
+        }
         each_piece(decimals, curve, |piece| {
             for &axis in wanted {
                 let (speed, acceleration) = of_piece(&counts, piece, axis, feed);
@@ -212,6 +228,8 @@ pub(super) fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl F
                 from = to;
             }
         }
+        // It is no polynomial.
+        Written::Arc(_) => {}
         Written::Polynomial(polynomial) => {
             let mut start = polynomial.start;
             for block in &polynomial.blocks {

@@ -15,6 +15,7 @@
 //! | [`range`], [`limits`] | how far and how fast each axis has to move |
 
 pub mod approximate;
+pub mod arcs;
 pub mod check;
 pub mod choose;
 pub mod convert;

@@ -44,6 +44,7 @@ fn homes(intent: &mut Intent, machine: &Machine) {
         | Step::Spindle(_)
         | Step::Coolant
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_)
         | Step::Cut(_) => true,
     });
@@ -61,6 +62,7 @@ fn position_at_home(intent: &mut Intent) {
         | Step::Spindle(_)
         | Step::Coolant
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_)
         | Step::Cut(_) => None,
     });
@@ -80,6 +82,7 @@ fn position_at_home(intent: &mut Intent) {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Cut(_) => false,
         })
         .cloned()
@@ -139,7 +142,12 @@ fn shifts(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
         let ends = rest.peek().is_none_or(|next| match next.step {
             Step::Comment(_) | Step::Home(_) => true,
             Step::Shift(_) => section.iter().any(|located| located.step.cut().is_some()),
-            Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Rapid(_) | Step::Cut(_) => false,
+            Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Auxiliary(_)
+            | Step::Rapid(_)
+            | Step::Cut(_) => false,
         });
         if ends {
             if let Some(to) = offset(&section) {

@@ -24,13 +24,15 @@ mod rational;
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
+use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
     COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role, Shift, Step,
-    Units, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
 };
 use crate::machine::Machine;
+use crate::setup::wrapped;
 use crate::units::{DEGREES, Kind, MAX_AXES};
 
 /// The most decimals of a coefficient.
@@ -90,14 +92,21 @@ pub fn quantise(
     };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
+        if let Step::Comment(text) = &step {
+            let lines = wrapped(text, machine).into_iter();
+            steps.extend(lines.map(|line| Located { step: Step::Comment(line), span }));
+            continue;
+        }
         let step = quantiser.step(step).map_err(|Unwritable| {
             Diagnostic::error("number-range", "a number is too large for the machine's decimals").at(span, "")
         })?;
         let zero = step.cut().is_some_and(|cut| match &cut.curve {
             Written::Lines(line) if !line.rates.is_empty() => line.rates.iter().any(|rate| rate.is_zero()),
-            Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
-                cut.feed.is_some_and(Decimal::is_zero)
-            }
+            Written::Lines(_)
+            | Written::Arc(_)
+            | Written::Polynomial(_)
+            | Written::Nurbs(_)
+            | Written::Through(..) => cut.feed.is_some_and(Decimal::is_zero),
         });
         if zero {
             return Err(Diagnostic::error("feed-rounds-to-zero", "the feed rounds to zero")
@@ -156,6 +165,9 @@ impl Quantiser<'_> {
             Step::Tool(number) => Step::Tool(number),
             Step::Spindle(rpm) => Step::Spindle(rate(rpm)?),
             Step::Coolant => Step::Coolant,
+            Step::Auxiliary(auxiliary) => {
+                Step::Auxiliary(auxiliary.try_map(|seconds| rate(seconds).ok()).ok_or(Unwritable)?)
+            }
             Step::Home(axis) => {
                 self.position[axis] = None;
                 Step::Home(axis)
@@ -189,6 +201,7 @@ impl Quantiser<'_> {
     fn curve(&mut self, curve: Curve, role: Role) -> Result<Written, Unwritable> {
         match curve {
             Curve::Lines(line) => Ok(Written::Lines(self.points(&line)?)),
+            Curve::Arc(arc) => self.arc(&arc),
             Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
             Curve::Polynomial(pieces) => self.polynomial(&pieces, role == Role::Path && self.closing),
             Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
@@ -212,6 +225,26 @@ impl Quantiser<'_> {
         let rate = |x: &f64| Decimal::round(*x, self.machine.digits.feed).ok_or(Unwritable);
         let rates = line.rates.iter().map(rate).collect::<Result<Vec<Decimal>, Unwritable>>()?;
         Ok(WrittenPoints { start, stride: line.stride, units, lines: Vec::new(), rates })
+    }
+
+    /// An arc between the rounded ends. One so short that these are the same would become a whole turn: it is a line.
+    fn arc(&mut self, arc: &Arc) -> Result<Written, Unwritable> {
+        let (start, end) = (self.start(&arc.start())?, self.point(&arc.end())?);
+        let [u, v, _] = arc.plane().axes();
+        self.arrive(&end);
+        if !arc.is_full() && start[u] == end[u] && start[v] == end[v] && arc.sweep().abs() < 1.0 {
+            let units = end[..self.machine.axes.count()].to_vec();
+            let stride = self.machine.axes.count();
+            return Ok(Written::Lines(WrittenPoints {
+                start,
+                stride,
+                units,
+                lines: Vec::new(),
+                rates: Vec::new(),
+            }));
+        }
+        let center = [self.units(u, arc.center()[0])?, self.units(v, arc.center()[1])?];
+        Ok(Written::Arc(WrittenArc { plane: arc.plane(), sense: arc.sense(), start, end, center, line: 0 }))
     }
 
     fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {

@@ -7,6 +7,7 @@ use crate::ir::{Decimals, Shift, Step, Units, Written};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::{Kind, MAX_AXES};
+use crate::verify::to_arc;
 
 /// The greatest coordinate, mm or degrees, of the narrowest control (Heidenhain: ±99 999.9999).
 const GREATEST: f64 = 99_999.999_9;
@@ -168,6 +169,8 @@ fn wraps(decimals: &Decimals, machine: &Machine, axis: usize) -> Option<Diagnost
                         from = point[axis];
                     }
                 }
+                // It turns no axis.
+                Written::Arc(_) => {}
                 curve @ (Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..)) => {
                     let mut reach = Reach::new();
                     reach.curve(decimals, curve);
@@ -183,7 +186,12 @@ fn wraps(decimals: &Decimals, machine: &Machine, axis: usize) -> Option<Diagnost
                     }
                 }
             },
-            Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Home(_) => {}
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Auxiliary(_) => {}
         }
     }
     None
@@ -210,7 +218,8 @@ impl Reach {
             | Step::Spindle(_)
             | Step::Coolant
             | Step::Home(_)
-            | Step::Shift(_) => {}
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
         }
     }
 
@@ -233,6 +242,15 @@ impl Reach {
                 }
                 point(&low);
                 point(&high);
+            }
+            Written::Arc(arc) => {
+                if let Some(arc) = to_arc(decimals, arc) {
+                    let (low, high) = arc.range();
+                    for axis in 0..axes {
+                        self.take(axis, low[axis]);
+                        self.take(axis, high[axis]);
+                    }
+                }
             }
             Written::Polynomial(_) | Written::Nurbs(_) => each_piece(decimals, curve, |piece| {
                 for axis in 0..axes {

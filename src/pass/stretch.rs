@@ -48,12 +48,13 @@ pub fn counted(machine: &Machine) -> Measure {
 /// F of any other curve, whose feed is mm/min along its linear axes, and how far the speed is from that inside it, as a share:
 /// such a curve is one stretch. Where no linear axis moves, the feed is that of what does.
 pub fn of_curve(curve: &Curve, feed: f64, axes: &Axes, machine: &Machine, radius: f64) -> (f64, f64) {
-    if machine.rotary_feed == RotaryFeed::Free || machine.rotary_feed == RotaryFeed::InverseTime {
+    let turns = axes.as_slice().iter().any(|(_, kind)| *kind == Kind::Rotary);
+    let each = weight(machine, radius);
+    if !turns || each == 0.0 {
         return (feed, 0.0);
     }
     let pieces = curve.pieces();
     let linear: f64 = pieces.iter().map(|piece| linear_length(piece, axes)).sum();
-    let each = weight(machine, radius);
     let counted: f64 = pieces.iter().map(|piece| length(piece, axes, each)).sum();
     if linear == 0.0 || counted == linear {
         return (feed, 0.0);

@@ -92,7 +92,7 @@ impl Cursor<'_> {
             (Curve::Nurbs(curve), Written::Nurbs(nurbs)) => {
                 to_nurbs(self.decimals, nurbs).ok().and_then(|path| cut_like(curve, &path)).unwrap_or(pieces)
             }
-            (Curve::Nurbs(_) | Curve::Lines(_) | Curve::Polynomial(_), _)
+            (Curve::Nurbs(_) | Curve::Lines(_) | Curve::Arc(_) | Curve::Polynomial(_), _)
             | (Curve::Through(..) | Curve::Logarithmic(_), _) => pieces,
         };
         let scaled = |pieces: &[Bezier]| pieces.iter().map(|piece| metric.scaled(piece)).collect::<Vec<_>>();
@@ -116,7 +116,7 @@ impl Cursor<'_> {
                     self.advance();
                 }
             }
-            Written::Nurbs(_) | Written::Through(..) => self.advance(),
+            Written::Nurbs(_) | Written::Arc(_) | Written::Through(..) => self.advance(),
         }
         Ok(found)
     }
@@ -178,7 +178,8 @@ impl Cursor<'_> {
                     from = block.end;
                 }
             }
-            Written::Through(..) => {}
+            // An arc is none of these curves' blocks.
+            Written::Arc(_) | Written::Through(..) => {}
         }
         if path.is_empty() {
             return Err(self.differs("less-than-asked", "a path is missing here".to_owned()));

@@ -35,6 +35,7 @@ impl<'p> Cursor<'p> {
         if log.method != Method::OddEven {
             match written {
                 Written::Lines(_) => self.chords((log, feed), &stretches, &mut found, tolerance)?,
+                Written::Arc(_) => return Err(self.arc_here()),
                 Written::Polynomial(_) | Written::Nurbs(_) => {
                     let pieces = self.path_pieces(log, curve.end(), &stretches, &mut found)?;
                     for (i, piece) in pieces.iter().enumerate() {
@@ -78,6 +79,7 @@ impl<'p> Cursor<'p> {
                     self.odd_even_lines((log, feed), start, steps, &stretches, &mut found)?;
                 }
             }
+            Written::Arc(_) => return Err(self.arc_here()),
             Written::Polynomial(_) | Written::Nurbs(_) => {
                 let pieces = self.path_pieces(log, end, &stretches, &mut found)?;
                 self.odd_even_pieces(curve, asked, &pieces, &mut found)?;
@@ -202,7 +204,7 @@ impl<'p> Cursor<'p> {
         self.stretch_feed(cut.feed, stretch)?;
         match &cut.curve {
             Written::Lines(points) => Ok((points, cut.feed)),
-            Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
+            Written::Arc(_) | Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
                 Err(self.differs("step-differs", "here straight moves were asked".to_owned()))
             }
         }
@@ -283,7 +285,7 @@ impl<'p> Cursor<'p> {
     fn lines_run(&self) -> Result<Option<&'p WrittenPoints>, Diagnostics> {
         Ok(match &self.written()?.curve {
             Written::Lines(points) => Some(points),
-            Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => None,
+            Written::Arc(_) | Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => None,
         })
     }
 
@@ -494,6 +496,6 @@ fn ends(curve: &LogCurve, start: f64, end: f64, found: &mut Found) {
 fn blocks(written: &Written, pieces: usize) -> usize {
     match written {
         Written::Nurbs(nurbs) => nurbs.points.len() - 1,
-        Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => pieces,
+        Written::Lines(_) | Written::Arc(_) | Written::Polynomial(_) | Written::Through(..) => pieces,
     }
 }

@@ -94,5 +94,43 @@ fn million(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, odd_even, direct, whole, million);
+/// A million points as a CAM system writes them, about 40 MB.
+fn cl_data() -> Sources {
+    use std::fmt::Write as _;
+    let mut text = String::from(
+        "PARTNO MILLION\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0.0,0.0,50.0\nFEDRAT/400.0,MMPM\n",
+    );
+    for i in 0..1_000_000u32 {
+        let t = f64::from(i);
+        // A zigzag over a wavy surface, with six decimals as CAM systems print them.
+        let (x, y, z) = ((t * 0.137) % 200.0, t * 2.0e-4, -5.0 + ((t * 0.011) % 7.0) * 0.3);
+        let _ = writeln!(text, "GOTO / {x:.6}, {y:.6}, {z:.6}");
+    }
+    text.push_str("FINI\n");
+    Sources::new(Source::new("million.cl", text))
+}
+
+/// CL data of a million points: reading alone, the whole way with proof, and without it. Aim 100 MB/s of input.
+fn points_of_cl_data(c: &mut Criterion) {
+    let mut group = c.benchmark_group("cl-data");
+    group.sample_size(10);
+    let sources = cl_data();
+    let size = sources.get(SourceId::INPUT).map_or(0, |source| source.text.len());
+    group.throughput(Throughput::Bytes(size as u64));
+    let Some(language) = front::find("apt") else { return };
+    group.bench_function("parse", |b| b.iter(|| (language.parse)(black_box(&sources)).is_ok()));
+    for name in ["sinumerik", "heidenhain", "mazak"] {
+        let machine = Machine::built_in(name).unwrap_or_else(|| panic!("no machine {name}"));
+        for no_verify in [false, true] {
+            let what = if no_verify { "written" } else { "proved" };
+            let options = Options { no_verify, ..Options::default() };
+            group.bench_function(format!("{name}/{what}"), |b| {
+                b.iter(|| compile(black_box(&sources), language, &machine, &options).is_ok());
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, odd_even, direct, whole, million, points_of_cl_data);
 criterion_main!(benches);

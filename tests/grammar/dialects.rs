@@ -186,10 +186,13 @@ fn what_is_not_read_is_not_recognised() {
     let lines: &[(&str, &[&str])] = &[
         (
             "sinumerik",
-            &["N10 G2 X10 I5", "N10 X10 FOO", "PO[X]=(1,2,3,4,5,6)", "UPATHX10", "X10 / Y10", "G1 X1..5"],
+            &["N10 G2 X10 CR=5", "N10 X10 FOO", "PO[X]=(1,2,3,4,5,6)", "UPATHX10", "X10 / Y10", "G1 X1..5"],
         ),
-        ("heidenhain", &["1 CC X+0", "1 L X+1 M3", "1 LX+1", "1 L X+1 RL", "  K3X+0", "1 L X+1 ~ ; a\nY+1"]),
-        ("mazak", &["G02 X1. Y1. R5.", "/G1 X1.", "(a", "G1 X1. Q1", "G1 x1.", "X1. ;;"]),
+        (
+            "heidenhain",
+            &["1 CR X+0 R+5", "1 L X+1 M3", "1 LX+1", "1 L X+1 RL", "  K3X+0", "1 L X+1 ~ ; a\nY+1"],
+        ),
+        ("mazak", &["G02.1 X1. Y1. R5.", "/G1 X1.", "(a", "G1 X1. Q1", "G1 x1.", "X1. ;;"]),
     ];
     assert_eq!(lines.len(), DIALECTS.len());
     for (name, lines) in lines {

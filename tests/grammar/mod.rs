@@ -6,10 +6,12 @@
 //! | `terms` | what it says in words |
 //! | `recognise` | whether a text is a sentence |
 //! | `generate` | sentences |
+//! | `apt` | CL data: its reader against its grammar |
 //! | `dialects` | readers read what the grammar has, writers write nothing else |
 //! | `quotes` | functions quote their rules |
 //! | `keys` | TOML inputs: the keys and kinds of the code |
 
+mod apt;
 mod dialects;
 mod ebnf;
 mod generate;
@@ -38,7 +40,7 @@ fn every_language_has_a_grammar_and_every_grammar_a_language() {
         .flatten()
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
-    let languages = splinepost::front::LANGUAGES.iter().map(|language| language.name);
+    let languages = splinepost::front::LANGUAGES.iter().map(|language| language.grammar);
     let names = DIALECTS.iter().map(|dialect| dialect.name).chain(languages).chain(["machine"]);
     assert_eq!(found, names.map(|name| format!("{name}.ebnf")).collect());
 }

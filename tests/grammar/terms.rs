@@ -36,8 +36,19 @@ impl Terms {
     /// For a machine.
     pub(super) fn of(machine: &Machine) -> Terms {
         let frame = &machine.frame;
-        let calls =
-            [&frame.tool, &frame.spindle, &frame.tool_spindle, &frame.coolant, &frame.home, &frame.shift];
+        let calls = [
+            &frame.tool,
+            &frame.spindle,
+            &frame.tool_spindle,
+            &frame.coolant,
+            &frame.home,
+            &frame.coolant_stop,
+            &frame.spindle_stop,
+            &frame.stop,
+            &frame.optional_stop,
+            &frame.dwell,
+            &frame.shift,
+        ];
         let all = [&frame.header, &frame.footer, &frame.close].into_iter().chain(calls);
         let wrapping = machine.axes.as_slice().iter().filter(|(axis, _)| machine.limits(*axis).modulo);
         Terms {
@@ -123,6 +134,7 @@ impl Terms {
                     ("rpm", "3000"),
                     ("home", &self.home),
                     ("words", "A90"),
+                    ("seconds", "2.5"),
                 ];
                 random.pick(&self.beginnings).map(|template| template.fill(&values))
             }
@@ -138,7 +150,7 @@ fn is_filled_in(template: &Template, line: &str) -> bool {
             "tool" => value.bytes().all(|b| b.is_ascii_digit()),
             "label" | "i" | "number" => value.bytes().all(|b| b.is_ascii_digit()),
             "home" | "words" => value.starts_with(|c: char| c.is_ascii_uppercase()),
-            "rpm" => value.bytes().all(|b| b.is_ascii_digit() || b == b'.'),
+            "rpm" | "seconds" => value.bytes().all(|b| b.is_ascii_digit() || b == b'.'),
             _ => true,
         })
     })

@@ -47,6 +47,7 @@ fn settled(output: &Output) -> &Logarithmic {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_) => None,
     });
     paths.take(1).next().expect("a cutter has a flute")

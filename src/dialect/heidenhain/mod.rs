@@ -61,6 +61,7 @@ mod words;
 mod write;
 
 use super::{Dialect, Form, Motion, Parameter, Round};
+use crate::geom::arc::Plane;
 
 /// The dialect.
 pub const DIALECT: Dialect = Dialect {
@@ -80,6 +81,8 @@ pub const DIALECT: Dialect = Dialect {
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
     inverse_time: false,
     round: Round::Step,
+    // C lies in the working plane; a helix is polar, with an angle that rounds.
+    takes_arc: |plane, helix| plane == Plane::Xy && !helix,
     write: write::write,
     read: read::read,
 };

@@ -16,6 +16,8 @@
 //! which is as if K1 were K1 + δ: at most 1 µm, at the start, and nothing at the end. What is written here always has
 //! δ = 0; elsewhere a warning names the greatest.
 
+mod arcs;
+
 use super::words::{Word, cut, is_continuation, word};
 use crate::decimal::{Decimal, Spelling};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -23,6 +25,7 @@ use crate::dialect::Reading;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Line, Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
+use crate::geom::arc::Sense;
 use crate::ir::{COEFFICIENTS, PolynomialBlock, Step, Written, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -64,6 +67,8 @@ struct Block {
     feed: Option<Decimal>,
     rapid: bool,
     spline: bool,
+    /// DR of C.
+    rotation: Option<Sense>,
 }
 
 impl Block {
@@ -77,6 +82,7 @@ impl Block {
             feed: None,
             rapid: false,
             spline,
+            rotation: None,
         }
     }
 
@@ -100,6 +106,8 @@ struct Reader<'t, 'm> {
     gap: Option<(Decimal, Span)>,
     /// The first line that goes on without `~`.
     unmarked: Option<Span>,
+    /// The centre that CC stated, in X and Y.
+    center: Option<[i64; 2]>,
 }
 
 /// Reads a program.
@@ -113,6 +121,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         run: None,
         gap: None,
         unmarked: None,
+        center: None,
     };
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
@@ -148,7 +157,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             continue;
         }
         match keyword {
-            "L" | "SPL" => reader.block(keyword, body, start, &line, span),
+            "L" | "SPL" | "CC" | "C" => reader.block(keyword, body, start, &line, span),
             _ => match body.strip_prefix(';').or_else(|| body.strip_prefix('*')) {
                 Some(comment) => reader.assembler.step(Step::Comment(comment.trim().to_owned()), span),
                 None => reader.unknown(body, start),
@@ -178,7 +187,8 @@ impl<'t> Reader<'t, '_> {
     /// One block and the lines that continue it: its words, then what they mean.
     ///
     /// `block = "L", [ blank, words ], { "~", end_of_line, words }
-    ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }`
+    ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }
+    ///     | ( "CC" | "C" ), [ blank, words ], { "~", end_of_line, words }`
     fn block(&mut self, keyword: &str, body: &'t str, start: usize, first: &Line<'t>, mut span: Span) {
         let mut block = Block::new(keyword == "SPL");
         let known = self.assembler.diagnostics.0.len();
@@ -206,7 +216,14 @@ impl<'t> Reader<'t, '_> {
             span.end = Span::new(span.source, next.range()).end;
         }
         if known == self.assembler.diagnostics.0.len() {
-            self.meant(&block, first.number, head, span);
+            match keyword {
+                "CC" => self.center(&block, head),
+                "C" => self.arc(&block, first.number, head, span),
+                _ => self.meant(&block, first.number, head, span),
+            }
+        }
+        if keyword == "CC" {
+            return;
         }
         // Whatever is wrong with a block, the next one starts from its end.
         for (axis, units) in block.named() {
@@ -275,6 +292,7 @@ impl<'t> Reader<'t, '_> {
             }
             Word::Rapid => block.rapid = true,
             Word::Uncompensated => {}
+            Word::Rotation(sense) => block.rotation = Some(sense),
             Word::Other(text) => self.other(text, range),
         }
     }
@@ -391,7 +409,7 @@ impl<'t> Reader<'t, '_> {
         self.assembler.diagnostics.push(
             Diagnostic::error("block-unknown", message)
                 .at(span, "")
-                .hint("L, SPL, comments and the lines of the machine file are read"),
+                .hint("L, C, CC, SPL, comments and the lines of the machine file are read"),
         );
         let mut goes_on = body.ends_with('~');
         while goes_on && let Some(next) = self.lines.next() {
@@ -406,6 +424,9 @@ impl<'t> Reader<'t, '_> {
             // A run has one feed.
             self.flush();
             self.assembler.feed = block.feed;
+        }
+        if block.rotation.is_some() {
+            return self.assembler.error("rotation", "DR belongs to C", head);
         }
         match (block.spline, block.rapid) {
             (true, _) => self.spline(block, line, head, span),

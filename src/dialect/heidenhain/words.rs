@@ -1,6 +1,7 @@
 //! The words of Klartext blocks as written, one parser for each rule of `grammar/heidenhain.ebnf`.
 
 use crate::decimal::{Decimal, MAX_DIGITS, power_of_ten, read_decimal};
+use crate::geom::arc::Sense;
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while1};
 use nom::character::complete::{char, digit1, one_of, space0};
@@ -30,14 +31,17 @@ pub(super) enum Word<'t> {
     Rapid,
     /// `R0`
     Uncompensated,
+    /// `DR+`, counter-clockwise
+    Rotation(Sense),
     /// Anything else.
     Other(&'t str),
 }
 
-/// `word = coordinate | coefficient | feed | feed_parameter | rapid | step | compensation`, or [`other`]
+/// `word = coordinate | coefficient | feed | feed_parameter | rapid | step | compensation | rotation`, or [`other`]
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((coordinate, coefficient, feed, feed_parameter, rapid, step, compensation, other)).parse(input)
+    alt((coordinate, coefficient, feed, feed_parameter, rapid, step, compensation, rotation, other))
+        .parse(input)
 }
 
 /// `feed_parameter = "FQ", digits`
@@ -135,6 +139,13 @@ fn rapid(input: &str) -> IResult<&str, Word<'_>> {
 /// `compensation = "R0"`
 fn compensation(input: &str) -> IResult<&str, Word<'_>> {
     value(Word::Uncompensated, tag("R0")).parse(input)
+}
+
+/// `rotation = "DR", ( "+" | "-" )`
+fn rotation(input: &str) -> IResult<&str, Word<'_>> {
+    let (rest, sign) = preceded(tag("DR"), one_of("+-")).parse(input)?;
+    let sense = if sign == '+' { Sense::CounterClockwise } else { Sense::Clockwise };
+    Ok((rest, Word::Rotation(sense)))
 }
 
 /// What is no word of the grammar, up to a blank or a comment: it is refused by name.

@@ -2,10 +2,12 @@
 //! ends with `~`, and the lines that continue it have none.
 
 use crate::decimal::{Decimal, Spelling};
+use crate::dialect::arc::counted_sense;
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
-use crate::ir::{Decimals, PolynomialBlock, Units, Written, WrittenPoints, WrittenPolynomial};
+use crate::geom::arc::Sense;
+use crate::ir::{Decimals, PolynomialBlock, Units, Written, WrittenArc, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, closing_coefficients};
 
@@ -63,6 +65,7 @@ impl Writer<'_> {
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
+                    Written::Arc(arc) => self.arc(arc, cut.feed),
                     Written::Polynomial(polynomial) => self.polynomial(polynomial, cut.feed),
                     // No motion of this dialect has these forms, so that `check` lets none pass.
                     Written::Nurbs(_) | Written::Through(..) => {}
@@ -101,6 +104,29 @@ impl Writer<'_> {
             self.modal.end();
         }
         self.modal.lines_end();
+    }
+
+    /// The centre, then the end. `check` lets arcs in X Y pass only.
+    fn arc(&mut self, arc: &WrittenArc, feed: Option<Decimal>) {
+        let [u, v, _] = arc.plane.axes();
+        self.modal.begin("");
+        self.modal.text("CC ");
+        self.modal.axis(u, arc.center[0]);
+        self.modal.axis(v, arc.center[1]);
+        self.modal.end();
+        self.modal.begin("");
+        self.modal.text("C ");
+        self.modal.axis(u, arc.end[u]);
+        self.modal.axis(v, arc.end[v]);
+        self.modal.text(match counted_sense(self.modal.machine, arc.plane, arc.sense) {
+            Sense::Clockwise => "DR- ",
+            Sense::CounterClockwise => "DR+ ",
+        });
+        self.modal.feed(feed);
+        // The other axes rest; where they are is said by the next move that is straight.
+        self.modal.position[u] = Some(arc.end[u]);
+        self.modal.position[v] = Some(arc.end[v]);
+        self.modal.end();
     }
 
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, feed: Option<Decimal>) {

@@ -87,6 +87,8 @@ pub const MAZAK: Dialect = Dialect {
     parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
     inverse_time: true,
     round: Round::Place,
+    // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
+    takes_arc: |_, _| true,
     write: write::write,
     read: read::read,
 };

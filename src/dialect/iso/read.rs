@@ -10,10 +10,12 @@ mod words;
 use super::{Offset, is_block};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostics, Warned};
+use crate::dialect::arc;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
 use crate::dialect::{Form, Reading};
+use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
 use crate::machine::{Machine, RotaryFeed};
 use crate::source::{SourceId, Span};
@@ -28,20 +30,17 @@ enum Motion {
     None,
     Rapid,
     Line,
+    Arc(Sense),
     Nurbs,
     Through,
 }
 
 /// Codes that state what the IR assumes anyway, and codes of how exactly the control runs, which move no path; in tenths.
-const STATE_CODES: &[i64] = &[150, 170, 210, 400, 490, 610, 611, 640, 670, 690, 800, 900, 940, 970, 980];
+const STATE_CODES: &[i64] = &[150, 210, 400, 490, 610, 611, 640, 670, 690, 800, 900, 940, 970, 980];
 
 /// Codes under which the same words are another path, and what they mean; in tenths.
 const REFUSED_CODES: &[(i64, &str)] = &[
-    (20, "arcs are not read"),
-    (30, "arcs are not read"),
     (40, "a dwell is not read"),
-    (180, "another plane than XY is not read"),
-    (190, "another plane than XY is not read"),
     (200, "inches are not read"),
     (280, "the home position is the machine's own"),
     (410, "cutter radius compensation is not read"),
@@ -68,6 +67,8 @@ struct Block {
     count: usize,
     motion: Option<Motion>,
     feed: Option<Placed>,
+    i: Option<Placed>,
+    j: Option<Placed>,
     k: Option<Placed>,
     r: Option<Placed>,
     p: Option<Placed>,
@@ -77,6 +78,7 @@ struct Block {
     high_speed: Option<(i64, Range<usize>)>,
     /// G43.
     offset: Option<Range<usize>>,
+    plane: Option<Plane>,
 }
 
 impl Block {
@@ -107,6 +109,8 @@ struct Reader<'m> {
     /// The work offset in force, G54 to G59, in tenths.
     work_offset: Option<i64>,
     warned_left_out: bool,
+    /// G17, G18 or G19.
+    plane: Plane,
 }
 
 /// Reads a program.
@@ -127,6 +131,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         offset_again: None,
         work_offset: None,
         warned_left_out: false,
+        plane: Plane::Xy,
     };
     for line in lines {
         let mut body = line.text.trim_ascii_start();
@@ -151,7 +156,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         let is_move = frame.header_complete()
             && reader.motion != Motion::None
             && reader.assembler.letter(first).is_some();
-        if !is_move {
+        if !is_move || frame.is_in_doubt() {
             if reader.run.is_some() && frame.may_begin(body) {
                 reader.flush();
             }
@@ -301,6 +306,8 @@ impl Reader<'_> {
         let slot = match letter {
             b'G' => return self.code(value, range, block),
             b'F' => &mut block.feed,
+            b'I' => &mut block.i,
+            b'J' => &mut block.j,
             b'K' => &mut block.k,
             b'R' => &mut block.r,
             b'P' => &mut block.p,
@@ -338,6 +345,16 @@ impl Reader<'_> {
         let motion = match tenths {
             Some(0) => Motion::Rapid,
             Some(10) => Motion::Line,
+            Some(20) => Motion::Arc(Sense::Clockwise),
+            Some(30) => Motion::Arc(Sense::CounterClockwise),
+            Some(tenths @ (170 | 180 | 190)) => {
+                block.plane = Some(match tenths {
+                    170 => Plane::Xy,
+                    180 => Plane::Zx,
+                    _ => Plane::Yz,
+                });
+                return;
+            }
             Some(62) if dialect.motion_of(Form::Nurbs).is_some() => Motion::Nurbs,
             Some(61) if dialect.motion_of(Form::Through(ThroughKind::Fine)).is_some() => Motion::Through,
             Some(tenths @ (50 | 51)) => {
@@ -389,6 +406,10 @@ impl Reader<'_> {
             }
             self.motion = motion;
         }
+        if let Some(plane) = block.plane {
+            self.flush();
+            self.plane = plane;
+        }
         if let Some((code, range)) = block.high_speed.take() {
             self.high_speed(code, &mut block, range);
         }
@@ -418,15 +439,23 @@ impl Reader<'_> {
         if let Some((_, range)) = block.q.take() {
             self.error("word-unknown", "Q is read with G05.1 only", range);
         }
+        let arc = matches!(self.motion, Motion::Arc(_));
+        for (name, word) in [("I", &block.i), ("J", &block.j)] {
+            if let (Some((_, range)), false) = (word, arc) {
+                self.error("arc-word", format!("{name} belongs to G2 and G3"), range.clone());
+            }
+        }
         if self.motion == Motion::Nurbs {
             return self.nurbs_block(&block, line, span);
         }
+        let center = [block.i.take(), block.j.take(), block.k.take_if(|_| arc)];
+        let offsets = center.map(|word| word.map(|(value, _)| value));
         for (name, word) in [("K", block.k.take()), ("R", block.r.take()), ("P", block.p.take())] {
             if let Some((_, range)) = word {
                 self.error("spline-word", format!("{name} belongs to G06.2"), range);
             }
         }
-        if block.count == 0 {
+        if block.count == 0 && !(arc && offsets.iter().any(Option::is_some)) {
             return;
         }
         match self.motion {
@@ -438,6 +467,10 @@ impl Reader<'_> {
                 self.short_way(&mut block);
                 self.assembler.rate = rate;
                 self.assembler.line(block.named(), line, span);
+            }
+            Motion::Arc(sense) => {
+                let said = arc::Said { plane: self.plane, sense, named: block.named(), offsets, line, span };
+                arc::read(&mut self.assembler, &said);
             }
             Motion::Through => self.through_block(&block, line, span),
             Motion::Nurbs => {} // met above
@@ -486,7 +519,7 @@ impl Reader<'_> {
                 let moves = match self.motion {
                     Motion::None => false,
                     Motion::Rapid => block.named().iter().any(|(axis, _)| Some(*axis) == self.z),
-                    Motion::Line | Motion::Nurbs | Motion::Through => 0 < block.count,
+                    Motion::Line | Motion::Arc(_) | Motion::Nurbs | Motion::Through => 0 < block.count,
                 };
                 if moves {
                     self.offset_due = None;

@@ -2,9 +2,11 @@
 
 use super::{Offset, is_block};
 use crate::decimal::{Decimal, write_units};
+use crate::dialect::arc;
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, ToolLines, parts};
+use crate::geom::arc::Plane;
 use crate::ir::{Decimals, Written, WrittenNurbs, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
@@ -22,6 +24,7 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
         offset_due: None,
         offset_tool: None,
         through: false,
+        plane: None,
     };
     writer.program();
     String::from_utf8(writer.modal.out).unwrap_or_default()
@@ -39,6 +42,8 @@ struct Writer<'a> {
     offset_tool: Option<u32>,
     /// Whether the last motion is G06.1, which a comment does not end.
     through: bool,
+    /// The plane that this section chose.
+    plane: Option<Plane>,
 }
 
 impl Writer<'_> {
@@ -76,6 +81,7 @@ impl Writer<'_> {
                 Part::Comment(text) => {
                     self.line(&format!("({text})"));
                     self.modal.forget();
+                    self.plane = None;
                     self.offset_due = self.offset_tool;
                 }
                 Part::Body => {
@@ -89,6 +95,7 @@ impl Writer<'_> {
                     }
                     match &cut.curve {
                         Written::Lines(points) => self.lines(points, cut.feed),
+                        Written::Arc(arc) => arc::write(&mut self.modal, arc, cut.feed, &mut self.plane),
                         Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),
                         Written::Through(_, points) => self.through(points, &cut.curve, cut.feed),
                         // No motion of these dialects has this form, so `convert` leaves none.

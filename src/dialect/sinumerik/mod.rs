@@ -62,6 +62,7 @@ mod words;
 mod write;
 
 use super::{Dialect, Form, Motion, NurbsRules, Parameter, Round};
+use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 
 /// The dialect.
@@ -104,6 +105,8 @@ pub const DIALECT: Dialect = Dialect {
     parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
     inverse_time: false,
     round: Round::Shortest,
+    // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise.
+    takes_arc: |plane, _| plane == Plane::Xy,
     write: write::write,
     read: read::read,
 };

@@ -9,9 +9,11 @@ use super::words::{Word, word};
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
+use crate::dialect::arc;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
+use crate::geom::arc::{Plane, Sense};
 use crate::ir::{
     COEFFICIENTS, Denominator, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs,
     WrittenPoints, WrittenPolynomial,
@@ -30,6 +32,7 @@ enum Motion {
     None,
     Rapid,
     Line,
+    Arc(Sense),
     Poly,
     Bspline,
     Through(ThroughKind),
@@ -51,6 +54,8 @@ struct Block {
     denominator: Option<(Decimal, [Decimal; COEFFICIENTS])>,
     pl: Option<Decimal>,
     pw: Option<Decimal>,
+    /// I J K.
+    center: [Option<Decimal>; 3],
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -123,7 +128,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         // A block of one axis letter and a digit is a move; only others can be lines of the frame.
         let is_move = frame.header_complete()
             && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
-        if !is_move || !reader.is_cutting() {
+        if !is_move || !reader.is_cutting() || frame.is_in_doubt() {
             let steps_before = reader.run.is_some();
             if steps_before && frame.may_begin(body) {
                 reader.flush();
@@ -174,6 +179,7 @@ impl Reader<'_> {
             denominator: None,
             pl: None,
             pw: None,
+            center: [None; 3],
             feed: None,
             starts_spline: false,
         };
@@ -306,6 +312,11 @@ impl Reader<'_> {
         match (name, whole) {
             ("G", Some(0)) => self.set_motion(Motion::Rapid),
             ("G", Some(1)) => self.set_motion(Motion::Line),
+            ("G", Some(2)) => self.set_motion(Motion::Arc(Sense::Clockwise)),
+            ("G", Some(3)) => self.set_motion(Motion::Arc(Sense::CounterClockwise)),
+            ("I", _) => block.center[0] = Some(value),
+            ("J", _) => block.center[1] = Some(value),
+            ("K", _) => block.center[2] = Some(value),
             ("G", Some(code)) if STATE_CODES.contains(&format!("G{code}").as_str()) => {}
             ("F", _) => {
                 if value.compare(Decimal::ZERO).is_le() {
@@ -333,7 +344,9 @@ impl Reader<'_> {
                 let whole = span.start as usize..span.end as usize;
                 self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
             }
-            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line) | None => self.flush(),
+            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_)) | None => {
+                self.flush();
+            }
         }
         self.assembler.feed = Some(feed);
     }
@@ -352,7 +365,11 @@ impl Reader<'_> {
         if (block.pl.is_some() && !spline && self.motion != Motion::Poly) || (block.pw.is_some() && !spline) {
             return self.assembler.error("spline-word", "PL and PW belong to spline blocks", whole());
         }
-        if block.count == 0 && !block.has_polynomial {
+        let arc = matches!(self.motion, Motion::Arc(_));
+        if !arc && block.center.iter().any(Option::is_some) {
+            return self.assembler.error("arc-word", "I J K belong to G2 and G3", whole());
+        }
+        if block.count == 0 && !block.has_polynomial && !block.center.iter().any(Option::is_some) {
             if block.pl.is_some() || block.pw.is_some() {
                 self.assembler.error("spline-word", "a spline block without an axis", whole());
             }
@@ -364,6 +381,12 @@ impl Reader<'_> {
             }
             Motion::Rapid => self.assembler.rapid(block.named(), span),
             Motion::Line => self.assembler.line(block.named(), line, span),
+            Motion::Arc(sense) => {
+                let plane = Plane::Xy;
+                let said =
+                    arc::Said { plane, sense, named: block.named(), offsets: block.center, line, span };
+                arc::read(&mut self.assembler, &said);
+            }
             Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
         }
     }
@@ -439,7 +462,7 @@ impl Reader<'_> {
                     WrittenPoints { start: run.start, stride, units, lines: run.lines, rates: Vec::new() },
                 ))
             }
-            Motion::None | Motion::Rapid | Motion::Line => None,
+            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) => None,
         };
         let Some(curve) = curve else { return };
         self.path_reference(&curve, span);

@@ -48,7 +48,7 @@ fn shortest(input: &str) -> IResult<&str, Word<'_>> {
         .parse(input)
 }
 
-/// `address = ( axis_letter | "F" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1
+/// `address = ( axis_letter | "F" | "I" | "J" | "K" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1
 #[inline]
 fn address(input: &str) -> IResult<&str, Word<'_>> {
     let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
@@ -119,7 +119,7 @@ fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
     alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
 }
 
-/// `assignment = ( axis | "F" | "PL" | "PW" ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
+/// `assignment = ( axis | "F" | "I" | "J" | "K" | "PL" | "PW" ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
 fn assignment(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
     Ok((rest, Word::Address(name, value)))

@@ -1,8 +1,10 @@
 //! Spells a legal program for Sinumerik.
 
 use crate::decimal::{Decimal, Spelling, write_units};
+use crate::dialect::arc;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
+use crate::geom::arc::Plane;
 use crate::ir::{Decimals, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, moving};
@@ -12,8 +14,13 @@ use crate::units::Kind;
 pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
     let decimals = legal.decimals();
     let size = super::super::block::expected_size(decimals);
-    let mut writer =
-        Writer { modal: Modal::new(machine, size), decimals, upath: false, splinepath: Vec::new() };
+    let mut writer = Writer {
+        modal: Modal::new(machine, size),
+        decimals,
+        upath: false,
+        splinepath: Vec::new(),
+        plane: None,
+    };
     writer.program();
     String::from_utf8(writer.modal.out).unwrap_or_default()
 }
@@ -31,6 +38,8 @@ struct Writer<'a> {
     upath: bool,
     /// The axes of the SPLINEPATH in force in this section.
     splinepath: Vec<usize>,
+    /// The plane that this section chose.
+    plane: Option<Plane>,
 }
 
 impl Writer<'_> {
@@ -71,6 +80,7 @@ impl Writer<'_> {
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
+                    Written::Arc(arc) => arc::write(&mut self.modal, arc, cut.feed, &mut self.plane),
                     Written::Polynomial(polynomial) => self.polynomial(polynomial, &cut.curve, cut.feed),
                     Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),
                     Written::Through(kind, points) => self.through(*kind, points, &cut.curve, cut.feed),

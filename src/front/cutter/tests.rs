@@ -41,6 +41,7 @@ fn a_flute_is_retracted_before_anything_turns() {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Cut(_) => None,
         })
         .collect();
@@ -74,6 +75,7 @@ fn sections(process: &str) -> Vec<String> {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_)
         | Step::Cut(_) => None,
     };

@@ -74,7 +74,7 @@ impl Shape {
                 (Curve::Nurbs(placed), start, end)
             }
             // No kind of curve makes these.
-            curve @ (Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
+            curve @ (Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
         };
         Placed { curve, start, end, span: self.span }
     }
@@ -421,6 +421,6 @@ fn stands_still(curve: &Curve) -> bool {
             pieces.iter().flat_map(Bezier::control_points).all(|point| *point == pieces[0].start())
         }
         Curve::Nurbs(nurbs) => nurbs.points().iter().all(|point| *point == nurbs.points()[0]),
-        Curve::Logarithmic(_) => false,
+        Curve::Logarithmic(_) | Curve::Arc(_) => false,
     }
 }

@@ -76,7 +76,8 @@ impl Job {
                     pieces.iter().flat_map(Bezier::control_points).for_each(take);
                 }
                 Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(take),
-                Curve::Logarithmic(_) => {}
+                // No job has these.
+                Curve::Logarithmic(_) | Curve::Arc(_) => {}
             }
             // A curve that rests there was warned of.
             if own != (to, to) {

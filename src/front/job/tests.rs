@@ -24,10 +24,15 @@ fn moves(intent: &Intent) -> Vec<String> {
         .iter()
         .filter_map(|located| match &located.step {
             Step::Rapid(targets) => Some(format!("{}{}", axes.name(targets[0].0), targets[0].1)),
-            Step::Cut(Cut { role: Role::Approach, .. }) => Some("approach".to_owned()),
+            Step::Cut(Cut { role: Role::Approach | Role::AsAsked, .. }) => Some("approach".to_owned()),
             Step::Cut(Cut { role: Role::Path, .. }) => Some("path".to_owned()),
             Step::Comment(text) => Some(text.clone()),
-            Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Home(_) | Step::Shift(_) => None,
+            Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => None,
         })
         .collect()
 }

@@ -41,6 +41,7 @@ fn curves(decimals: &Decimals) -> Vec<&Written> {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_) => None,
     };
     decimals.program.steps.iter().filter_map(|located| curve(&located.step)).collect()
@@ -213,6 +214,7 @@ fn feed_is_modal_and_rapid_is_not() {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Cut(_)) => {
             panic!("{other:?}")
         }
@@ -244,7 +246,11 @@ fn what_is_not_understood_is_named_at_its_place() {
         ("2 L X+1 K1X+1", "spline-word", "K1X+1"),
         ("2 L X+1 ~", "block-unfinished", "~"),
         ("2 L X+1 hello", "word-unknown", "hello"),
-        ("2 C X+1 Y+1 DR-", "block-unknown", "C"),
+        ("2 CR X+1 Y+1 R+5 DR-", "block-unknown", "CR"),
+        ("2 C X+1 Y+1 DR-", "arc-center", "C X+1 Y+1 DR-"),
+        ("2 C X+1 Y+1", "rotation-missing", "C X+1 Y+1"),
+        ("2 CC X+1", "arc-center", "CC X+1"),
+        ("2 L X+1 DR+", "rotation", "L X+1 DR+"),
         ("2 LN X+1 NX+1", "block-unknown", "LN"),
         ("2 CYCL DEF 200 DRILLING ~\n  Q200=+2 ~\n  Q201=-3", "block-unknown", "CYCL"),
         ("2 M7", "block-unknown", "M7"),

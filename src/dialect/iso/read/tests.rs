@@ -38,7 +38,7 @@ fn curve(reading: &Reading) -> Nurbs {
                 let (points, weights) = (spline.points().to_vec(), spline.weights().to_vec());
                 Some(Nurbs::new(spline.degree(), knots, points, weights).unwrap())
             }
-            Written::Lines(_) | Written::Polynomial(_) | Written::Through(..) => None,
+            Written::Lines(_) | Written::Arc(_) | Written::Polynomial(_) | Written::Through(..) => None,
         },
         Step::Comment(_)
         | Step::Tool(_)
@@ -46,6 +46,7 @@ fn curve(reading: &Reading) -> Nurbs {
         | Step::Coolant
         | Step::Home(_)
         | Step::Shift(_)
+        | Step::Auxiliary(_)
         | Step::Rapid(_) => None,
     });
     curves.next_back().unwrap()
@@ -150,7 +151,7 @@ fn other_words_are_errors_at_their_place() {
         let found = problem(text);
         assert_eq!((found.0, found.1.as_str()), (id, place), "{text}");
     };
-    for code in ["G91", "G20", "G93", "G95", "G41", "G42", "G2", "G03", "G61.2", "G43.4", "G28"] {
+    for code in ["G91", "G20", "G93", "G95", "G41", "G42", "G04", "G61.2", "G43.4", "G28"] {
         is(&format!("G17 {code}\n"), "code-refused", code);
     }
     is("G1 X1. F0.\n", "feed-range", "F0.");
@@ -161,6 +162,8 @@ fn other_words_are_errors_at_their_place() {
     is("X1.\n", "motion-missing", "X1.");
     is("G1 X1.23456\n", "digits-too-many", "X1.23456");
     is("G1 X1. K3.\n", "spline-word", "K3.");
+    is("G1 X1. I3.\n", "arc-word", "I3.");
+    is("G0 X0. Y0.\nG2 X1. Y1.\n", "arc-axes", "G2 X1. Y1.");
     is("G1 X1. (open\n", "remark-open", "(open");
     is("G1 #100\n", "word-unreadable", "#100");
     is("/G1 X1.\n", "block-skip", "/G1");
@@ -204,13 +207,16 @@ fn remarks_end_no_spline() {
             Step::Comment(text) => text.clone(),
             Step::Cut(cut) => match &cut.curve {
                 Written::Through(_, points) => points.count().to_string(),
-                Written::Lines(_) | Written::Polynomial(_) | Written::Nurbs(_) => "other".to_owned(),
+                Written::Lines(_) | Written::Arc(_) | Written::Polynomial(_) | Written::Nurbs(_) => {
+                    "other".to_owned()
+                }
             },
             Step::Tool(_)
             | Step::Spindle(_)
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => "step".to_owned(),
         })
         .collect();

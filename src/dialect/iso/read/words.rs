@@ -33,7 +33,7 @@ fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
     preceded(tag("F#"), map_res(digit1, str::parse)).map(Word::FeedParameter).parse(input)
 }
 
-/// `address = ( axis_letter | "F" | "K" | "P" | "R" ), number | "O", { "0" }, digit - "0", { digit } | code`, or another
+/// `address = ( axis_letter | "F" | "I" | "J" | "K" | "P" | "R" ), number | "O", { "0" }, digit - "0", { digit } | code`, or another
 /// letter; no `=` follows, since `X1=10.` is axis X1
 #[inline]
 fn address(input: &str) -> IResult<&str, Word<'_>> {

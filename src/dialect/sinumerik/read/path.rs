@@ -38,7 +38,7 @@ pub(super) fn denominator_fault(
 /// is straight there and its length is the parameter. What the control makes of points is its own affair.
 pub(super) fn linear_in_parameter(decimals: &Decimals, curve: &Written, axes: &[usize]) -> bool {
     match curve {
-        Written::Lines(_) | Written::Through(..) => true,
+        Written::Lines(_) | Written::Arc(_) | Written::Through(..) => true,
         Written::Polynomial(polynomial) => polynomial.blocks.iter().all(|block| {
             block.denominator.is_none()
                 && axes.iter().all(|i| block.coefficients[*i].iter().all(|a| a.is_zero()))

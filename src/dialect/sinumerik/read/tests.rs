@@ -48,6 +48,7 @@ fn heights(text: &str) -> Vec<f64> {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => {}
         }
     }
@@ -147,6 +148,7 @@ fn the_feed_of_a_block_holds_from_it_on() {
             | Step::Coolant
             | Step::Home(_)
             | Step::Shift(_)
+            | Step::Auxiliary(_)
             | Step::Rapid(_) => None,
         })
         .collect();

@@ -1,0 +1,149 @@
+//! Arcs of controls that spell them G2 and G3 with the centre in I J K, counted from where the arc starts.
+//!
+//! ```text
+//! G2 X10 Y0 I5 J0          from (0, 0) to (10, 0) about (5, 0), clockwise seen against Z
+//! G3 X0 Y0 Z-1 I5 J0       a whole turn of a helix where it ends over its start
+//! G18 G2 X10 Z0 I5 K0      in another plane: seen against Y
+//! ```
+//!
+//! I J K are never modal.
+
+use super::assemble::Assembler;
+use super::modal::Modal;
+use crate::decimal::{Decimal, Spelling, write_units};
+use crate::diagnostic::Diagnostic;
+use crate::geom::arc::{Plane, Sense};
+use crate::ir::{Units, Written, WrittenArc};
+use crate::machine::Machine;
+use crate::source::Span;
+use crate::units::Axis;
+use crate::verify::to_arc;
+
+/// The letters of the centre, in the order of X Y Z.
+const CENTER: [u8; 3] = *b"IJK";
+
+/// The word that chooses a plane.
+pub fn plane_word(plane: Plane) -> &'static str {
+    match plane {
+        Plane::Xy => "G17",
+        Plane::Zx => "G18",
+        Plane::Yz => "G19",
+    }
+}
+
+/// The word of a sense.
+pub fn motion_word(sense: Sense) -> &'static str {
+    match sense {
+        Sense::Clockwise => "G2",
+        Sense::CounterClockwise => "G3",
+    }
+}
+
+/// The sense of an arc as the control sees it: where it counts one of the plane's axes the other way, it sees a mirror
+/// image. The same way back.
+pub fn counted_sense(machine: &Machine, plane: Plane, sense: Sense) -> Sense {
+    let reversed = machine.reversed();
+    let [u, v, _] = plane.axes();
+    if reversed[u] == reversed[v] { sense } else { sense.reversed() }
+}
+
+/// Writes an arc as one block. `plane` is the one in force; another is chosen in the block.
+pub fn write(modal: &mut Modal<'_>, arc: &WrittenArc, feed: Option<Decimal>, plane: &mut Option<Plane>) {
+    let [u, v, w] = arc.plane.axes();
+    modal.begin("N");
+    if *plane != Some(arc.plane) {
+        modal.text(plane_word(arc.plane));
+        modal.gap();
+        *plane = Some(arc.plane);
+    }
+    modal.motion(motion_word(counted_sense(modal.machine, arc.plane, arc.sense)));
+    modal.inverse(false);
+    let axes = modal.machine.axes.count();
+    let digits = modal.machine.axis_digits();
+    for i in 0..axes {
+        let in_plane = i == u || i == v;
+        if in_plane || modal.position[i] != Some(arc.end[i]) || (i == w && arc.start[w] != arc.end[w]) {
+            modal.axis(i, arc.end[i]);
+        }
+    }
+    for i in 0..3 {
+        let center = match i {
+            _ if i == u => arc.center[0],
+            _ if i == v => arc.center[1],
+            _ => continue,
+        };
+        modal.out.push(CENTER[i]);
+        let spelling = Spelling { sign_always: false, ..modal.spelling };
+        // From where the arc starts, as the control counts: no work offset is in it.
+        let offset = modal.counted(i, center) - modal.counted(i, arc.start[i]);
+        write_units(&mut modal.out, offset, digits[i], spelling);
+        modal.gap();
+    }
+    modal.feed(feed);
+    modal.reached(&arc.end);
+    modal.end();
+}
+
+/// What a block of G2 or G3 says beside its axes.
+pub struct Said<'b> {
+    /// The plane in force.
+    pub plane: Plane,
+    /// G2 or G3.
+    pub sense: Sense,
+    /// The axes named.
+    pub named: &'b [(usize, i64)],
+    /// I J K.
+    pub offsets: [Option<Decimal>; 3],
+    /// The line of the text.
+    pub line: u32,
+    /// The block.
+    pub span: Span,
+}
+
+/// Adds the arc that a block of G2 or G3 means.
+pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
+    let range = || said.span.start as usize..said.span.end as usize;
+    let [u, v, w] = said.plane.axes();
+    let names = ["X", "Y", "Z"];
+    if !(0..3)
+        .all(|i| Axis::new(names[i]).is_some_and(|axis| assembler.machine.axes.index_of(axis) == Some(i)))
+    {
+        return assembler.error("arc-axes", "arcs are read where the first axes are X Y Z", range());
+    }
+    if said.offsets[w].is_some() {
+        let message = format!("{} is no centre in this plane", char::from(CENTER[w]));
+        return assembler.error("arc-center", message, range());
+    }
+    if said.offsets.iter().all(Option::is_none) {
+        return assembler.error("arc-center", "an arc without its centre in I J K", range());
+    }
+    let end = assembler.target(said.named);
+    let start: Units = assembler.start(&end, said.span);
+    let reversed = assembler.machine.reversed();
+    let mut center = [0; 2];
+    for (center, i) in center.iter_mut().zip([u, v]) {
+        let offset = said.offsets[i].unwrap_or_default();
+        let Some(units) = offset.units(assembler.digits[i]) else {
+            let message = format!("{offset} has more decimals than the machine file gives this axis");
+            return assembler.error("digits-too-many", message, range());
+        };
+        let units = if reversed[i] { units.checked_neg() } else { Some(units) };
+        match units.and_then(|units| start[i].checked_add(units)) {
+            Some(sum) => *center = sum,
+            None => return assembler.error("arc-center", "the centre is out of range", range()),
+        }
+    }
+    let sense = counted_sense(assembler.machine, said.plane, said.sense);
+    let arc = WrittenArc { plane: said.plane, sense, start, end, center, line: said.line };
+    add(assembler, arc, &end, said.span);
+}
+
+/// Adds an arc that has a radius.
+pub fn add(assembler: &mut Assembler<'_>, arc: WrittenArc, end: &Units, span: Span) {
+    if to_arc(&assembler.empty(), &arc).is_none() {
+        let diagnostic = Diagnostic::error("arc-radius", "this arc has no radius").at(span, "");
+        assembler.diagnostics.push(diagnostic);
+        return;
+    }
+    assembler.curve(Written::Arc(arc), end, span);
+}

@@ -1,0 +1,252 @@
+//! Drilling cycles, expanded into moves: every control does the same then, and the proof covers it.
+//!
+//! With the point P of a `GOTO`, the tool along Z, CLEAR (or RAPTO) c above it and DEPTH (or FEDTO) d below it:
+//!
+//! ```text
+//! DRILL CSINK FACE SPDRL   rapid over P to P + c; feed to P − d; dwell; rapid to P + c, or to RTRCTO
+//! DEEP                     rapid over P to P + c; then for k = 1, 2, … feed to P − k·STEP, at most P − d; rapid to P + c;
+//!                          rapid to c above where it was
+//! REAM                     as DRILL, but back at feed
+//! ```
+//!
+//! A rapid over P never goes down before it is over P, and never goes across before it is up.
+
+use super::reader::{Reader, Said};
+use super::statement::Argument;
+use super::technology::Feed;
+use crate::diagnostic::Diagnostic;
+use crate::ir::Auxiliary;
+use crate::source::Span;
+
+/// The most pecks of one hole.
+const MAX_PECKS: f64 = 1000.0;
+
+/// What a cycle does at each point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Drill,
+    Deep,
+    Ream,
+    /// Refused: its points are passed over, since one report is enough.
+    Refused,
+}
+
+/// A cycle in force.
+#[derive(Clone, Debug)]
+pub(super) struct Cycle {
+    kind: Kind,
+    /// mm below the point.
+    depth: f64,
+    /// mm above the point.
+    clear: f64,
+    /// mm above the point, where it retracts to.
+    retract: f64,
+    step: f64,
+    /// Seconds.
+    dwell: f64,
+    feed: Option<Feed>,
+    line: u32,
+}
+
+impl Cycle {
+    const REFUSED: Cycle = Cycle {
+        kind: Kind::Refused,
+        depth: 0.0,
+        clear: 0.0,
+        retract: 0.0,
+        step: 0.0,
+        dwell: 0.0,
+        feed: None,
+        line: 0,
+    };
+}
+
+/// What the arguments of a cycle state, in units of the file.
+#[derive(Default)]
+struct Stated {
+    depth: Option<f64>,
+    clear: Option<f64>,
+    retract: Option<f64>,
+    step: Option<f64>,
+    dwell: f64,
+    feed: Option<Feed>,
+}
+
+impl Reader<'_> {
+    /// `CYCLE/type,args | OFF | ON | INIT | CLEAR`
+    pub(super) fn cycle(&mut self, said: &Said<'_>) {
+        let kind = said.first_word().to_ascii_uppercase();
+        self.cycle = Some(Cycle::REFUSED);
+        let kind = match kind.as_str() {
+            "OFF" | "CLEAR" => {
+                self.cycle = None;
+                return;
+            }
+            "ON" => {
+                self.cycle = self.last_cycle.clone();
+                if self.cycle.is_none() {
+                    self.error("cycle-unknown", "CYCLE/ON without a cycle before it", said.span);
+                }
+                return;
+            }
+            "DRILL" | "CSINK" | "FACE" | "SPDRL" => Kind::Drill,
+            "DEEP" => Kind::Deep,
+            "REAM" => Kind::Ream,
+            "TAP" => {
+                let message = "CYCLE/TAP: tapping needs the spindle to follow the feed, which no move says";
+                return self.refuse("cycle", message, said.span);
+            }
+            _ => {
+                let message = format!("CYCLE/{kind} is not compiled; DRILL, DEEP, CSINK, FACE and REAM are");
+                return self.refuse("cycle", message, said.span);
+            }
+        };
+        let Some(stated) = self.stated(said) else { return };
+        let Some(depth) = stated.depth.map(|d| d.abs() * self.scale).filter(|d| 0.0 < *d && d.is_finite())
+        else {
+            self.push(Diagnostic::error("cycle-depth", "the cycle states no depth").at(said.span, "").hint(
+                "DEPTH or FEDTO states one; a number without a word needs its place in [cycles] of --words",
+            ));
+            return;
+        };
+        let Some(clear) = stated.clear.map(|c| c * self.scale).filter(|c| 0.0 <= *c && c.is_finite()) else {
+            return self.error("cycle-clear", "the cycle states no CLEAR or RAPTO to begin from", said.span);
+        };
+        let step = stated.step.map_or(depth, |step| step * self.scale);
+        if kind == Kind::Deep && !(0.0 < step && depth / step <= MAX_PECKS) {
+            let message = format!("STEP must be greater than zero and make at most {MAX_PECKS} pecks");
+            return self.error("cycle-step", message, said.span);
+        }
+        self.cycle = Some(Cycle {
+            kind,
+            depth,
+            clear,
+            retract: stated.retract.map_or(clear, |r| (r * self.scale).max(clear)),
+            step,
+            dwell: stated.dwell,
+            feed: stated.feed,
+            line: said.record.line,
+        });
+        self.last_cycle.clone_from(&self.cycle);
+        let text = format!("{} AS MOVES", said.record.text.replace('/', " "));
+        self.carry(&text, said.span);
+    }
+
+    /// What the arguments say, by their words or their places.
+    fn stated(&mut self, said: &Said<'_>) -> Option<Stated> {
+        let mut stated = Stated::default();
+        let mut word: Option<String> = None;
+        let kind = said.first_word();
+        let order: Vec<String> = self.words.cycle(kind).to_vec();
+        let mut order = order.into_iter();
+        for placed in said.arguments().iter().skip(1) {
+            match placed.argument {
+                Argument::Word(next) => match next.to_ascii_uppercase().as_str() {
+                    "AUTO" | "MANUAL" | "ON" => word = None,
+                    next => word = Some(next.to_owned()),
+                },
+                Argument::Number(x) => {
+                    let Some(name) = word.take().or_else(|| order.next()) else {
+                        let place = said.place(placed);
+                        self.push(
+                            Diagnostic::error("cycle-number", "nothing says what this number of the cycle is")
+                                .at(place, "")
+                                .hint(format!("its place can be stated in a table for --words: [cycles] {kind} = [\"DEPTH\", …]")),
+                        );
+                        return None;
+                    };
+                    match name.as_str() {
+                        "DEPTH" | "FEDTO" => stated.depth = Some(x),
+                        "CLEAR" | "RAPTO" => stated.clear = Some(x),
+                        "RTRCTO" => stated.retract = Some(x),
+                        "STEP" | "INCR" => stated.step = Some(x),
+                        "DWELL" => stated.dwell = x.max(0.0),
+                        "IPM" | "MMPM" | "MMPR" | "IPR" | "FPM" => {
+                            stated.feed = Some(self.feed_in(&name, x, said.place(placed))?);
+                        }
+                        _ => {
+                            let message = format!("{name} of a cycle is not compiled");
+                            self.refuse("cycle", message, said.place(placed));
+                            return None;
+                        }
+                    }
+                }
+                Argument::Empty => {
+                    order.next();
+                }
+                Argument::Quoted(_)
+                | Argument::Assigned(..)
+                | Argument::AssignedWord(..)
+                | Argument::Group(_) => {
+                    self.error("arguments", "a cycle takes words and numbers", said.place(placed));
+                    return None;
+                }
+            }
+        }
+        if let Some(word) = word {
+            let message = format!("{word} of a cycle has no number");
+            self.error("arguments", message, said.span);
+            return None;
+        }
+        Some(stated)
+    }
+
+    /// The cycle at one point.
+    pub(super) fn hole(&mut self, point: [f64; 3], span: Span) {
+        let Some(cycle) = self.cycle.clone() else { return };
+        self.rapid = false;
+        if cycle.kind == Kind::Refused {
+            self.program.position = Some(point);
+            return;
+        }
+        self.pending = None;
+        let feed = cycle.feed.or(self.feed);
+        let Some(feed) = self.per_minute(feed, span) else { return };
+        let [x, y, z] = point;
+        let at = |height: f64| [x, y, height];
+        let (top, bottom) = (z + cycle.clear, z - cycle.depth);
+        if let Some([from_x, from_y, from_z]) = self.program.position {
+            if from_z < top {
+                self.program.rapid(&[from_x, from_y, top], span);
+            } else if (from_x, from_y) != (x, y) && top < from_z {
+                self.program.rapid(&at(from_z), span);
+            }
+        }
+        if self.program.position != Some(at(top)) {
+            self.program.rapid(&at(top), span);
+        }
+        let line = cycle.line;
+        match cycle.kind {
+            Kind::Refused => {}
+            Kind::Drill | Kind::Ream => {
+                self.program.line(&at(bottom), feed, line, span);
+                self.dwell(&cycle, span);
+            }
+            Kind::Deep => {
+                let pecks = (cycle.depth / cycle.step - 1.0e-9).ceil().max(1.0) as usize;
+                for k in 1..=pecks {
+                    let to = if k == pecks { bottom } else { z - cycle.step * k as f64 };
+                    self.program.line(&at(to), feed, line, span);
+                    self.dwell(&cycle, span);
+                    if k < pecks {
+                        self.program.rapid(&at(top), span);
+                        self.program.rapid(&at((to + cycle.clear).min(top)), span);
+                    }
+                }
+            }
+        }
+        let up = z + cycle.retract;
+        if cycle.kind == Kind::Ream {
+            self.program.line(&at(top), feed, line, span);
+        }
+        if cycle.kind != Kind::Ream || cycle.clear < cycle.retract {
+            self.program.rapid(&at(up), span);
+        }
+    }
+
+    fn dwell(&mut self, cycle: &Cycle, span: Span) {
+        if 0.0 < cycle.dwell {
+            self.program.auxiliary(Auxiliary::Dwell(cycle.dwell), span);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Points, increments, rapids and the tool axis.
+
+use super::arcs::{Circle, Left};
+use super::reader::{Reader, Said};
+use super::records::Record;
+use super::technology::Feed;
+use crate::diagnostic::Diagnostic;
+use crate::source::Span;
+
+/// How far a tool axis may be from Z and still be Z: as far as six decimals say nothing.
+const AXIS_SLACK: f64 = 1.0e-6;
+
+/// What waits for the next point.
+#[derive(Clone, Debug)]
+pub(super) enum Pending {
+    /// A circle waits for its end.
+    Circle(Circle),
+    /// A start tangent waits for its arc, INDIRV.
+    Tangent([f64; 3]),
+    /// An arc was left in this direction: a straight line after it may tell whether its sense was right.
+    Left(Left),
+}
+
+impl Reader<'_> {
+    /// A point in mm, where its coordinates are numbers that a machine may have.
+    fn point(&mut self, numbers: &[f64], span: impl Fn() -> Span) -> Option<[f64; 3]> {
+        let point = [numbers[0] * self.scale, numbers[1] * self.scale, numbers[2] * self.scale];
+        if point.iter().all(|x| x.abs() < 1.0e9) {
+            return Some(point);
+        }
+        self.error("number-range", "a coordinate is beyond any machine", span());
+        None
+    }
+
+    /// `GOTO/x,y,z[,i,j,k]`
+    #[inline]
+    pub(super) fn goto(&mut self, numbers: &[f64], record: &Record<'_>) {
+        let source = self.source;
+        let span = || record.span(source);
+        if numbers.len() == 6 {
+            if !self.set_axis([numbers[3], numbers[4], numbers[5]], span()) {
+                return;
+            }
+        } else if numbers.len() != 3 {
+            let message =
+                format!("a point has three numbers, or six with a tool axis, not {}", numbers.len());
+            return self.error("goto-numbers", message, span());
+        }
+        let Some(point) = self.point(numbers, span) else { return };
+        if self.cycle.is_some() {
+            return self.hole(point, span());
+        }
+        if self.pending.is_some() && self.met(point, span()) {
+            return;
+        }
+        if self.rapid {
+            self.rapid = false;
+            return self.program.rapid(&point, span());
+        }
+        let feed = match self.feed {
+            Some(Feed::PerMinute(mm)) => mm,
+            feed => match self.per_minute(feed, span()) {
+                Some(mm) => mm,
+                None => return,
+            },
+        };
+        self.program.line(&point, feed, record.line, span());
+    }
+
+    /// Meets a point where something waits for one; whether it was the end of an arc.
+    fn met(&mut self, point: [f64; 3], span: Span) -> bool {
+        match self.pending.take() {
+            Some(Pending::Circle(circle)) => {
+                self.arc_to(&circle, point, span);
+                true
+            }
+            Some(Pending::Tangent(_)) => {
+                self.error("tangent-alone", "INDIRV stands before a point, not before TLON", span);
+                false
+            }
+            Some(Pending::Left(left)) => {
+                self.left(&left, point);
+                false
+            }
+            None => false,
+        }
+    }
+
+    /// What waits at the end of the file.
+    pub(super) fn end_pending(&mut self) {
+        match self.pending.take() {
+            Some(Pending::Circle(circle)) => {
+                self.error("arc-end-missing", "this circle has no end: no GOTO follows", circle.span);
+            }
+            Some(Pending::Tangent(_) | Pending::Left(_)) | None => {}
+        }
+    }
+
+    /// Takes a tool axis; whether it is Z.
+    fn set_axis(&mut self, axis: [f64; 3], span: Span) -> bool {
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(0.5 < length && length < 2.0) {
+            self.error("tool-axis", "the tool axis is no direction", span);
+            return false;
+        }
+        self.axis = axis.map(|x| x / length);
+        let [x, y, z] = self.axis;
+        if x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z {
+            return true;
+        }
+        self.push(
+            Diagnostic::refusal("tool-axis-tilted", "the tool axis is not Z; three axes are compiled")
+                .at(span, "")
+                .hint("output the operation in the frame of the tilted plane, with the tool along Z"),
+        );
+        false
+    }
+
+    /// `MULTAX[/ON|OFF]`: whether points carry an axis; each point shows it anyway.
+    pub(super) fn multax(&mut self, said: &Said<'_>) {
+        if !said.arguments().is_empty() && !said.has("ON") && !said.has("OFF") {
+            self.error("arguments", "MULTAX is ON or OFF", said.span);
+        }
+    }
+
+    /// `TLAXIS/i,j,k`
+    pub(super) fn tlaxis(&mut self, said: &Said<'_>) {
+        match said.statement.numbers().as_deref() {
+            Some(&[i, j, k]) => {
+                self.set_axis([i, j, k], said.span);
+            }
+            _ => self.error("arguments", "TLAXIS takes three numbers", said.span),
+        }
+    }
+
+    /// `FROM/x,y,z[,i,j,k]`: where the tool is. It moves nothing.
+    pub(super) fn from(&mut self, said: &Said<'_>) {
+        match said.statement.numbers() {
+            Some(numbers) if numbers.len() == 3 || numbers.len() == 6 => {
+                if numbers.len() == 6 && !self.set_axis([numbers[3], numbers[4], numbers[5]], said.span) {
+                    return;
+                }
+                let Some(point) = self.point(&numbers, || said.span) else { return };
+                if self.program.has_moved() {
+                    let message = "FROM stands behind the first move; the tool is where the moves left it";
+                    self.push(Diagnostic::warning("from-late", message).at(said.span, ""));
+                    return;
+                }
+                self.home = Some(point);
+                self.program.position = Some(point);
+            }
+            _ => self.error("arguments", "FROM takes three or six numbers", said.span),
+        }
+    }
+
+    /// `GOHOME[/x,y,z]`, at rapid: to the point, or to that of FROM.
+    pub(super) fn gohome(&mut self, said: &Said<'_>) {
+        let point = match said.statement.numbers().as_deref() {
+            Some([]) => self.home,
+            Some(numbers) if numbers.len() == 3 || numbers.len() == 6 => self.point(numbers, || said.span),
+            _ => return self.error("arguments", "GOHOME takes three numbers or none", said.span),
+        };
+        self.rapid = false;
+        match point {
+            Some(point) => self.program.rapid(&point, said.span),
+            None => self.error(
+                "home-unknown",
+                "GOHOME without a point, and no FROM said where home is",
+                said.span,
+            ),
+        }
+    }
+
+    /// `GODLTA/dx,dy,dz | GODLTA/d`, the latter along the tool axis.
+    pub(super) fn godlta(&mut self, said: &Said<'_>) {
+        let Some(from) = self.program.position else {
+            return self.error("start-unknown", "an increment from a place that is not known", said.span);
+        };
+        let by = match said.statement.numbers().as_deref() {
+            Some(&[d]) => self.axis.map(|x| x * d),
+            Some(&[x, y, z]) => [x, y, z],
+            _ => return self.error("arguments", "GODLTA takes one or three numbers", said.span),
+        };
+        // `goto` takes units of the file.
+        let to: Vec<f64> = (0..3).map(|i| from[i] / self.scale + by[i]).collect();
+        self.goto(&to, said.record);
+    }
+}

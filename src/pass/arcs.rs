@@ -1,0 +1,67 @@
+//! Arcs that a control has no word for, as lines.
+
+use crate::geom::arc::Arc;
+use crate::geom::elementary;
+use crate::ir::Polyline;
+
+/// The longest chord turns by this, radians: a quarter.
+const LONGEST: f64 = std::f64::consts::FRAC_PI_2;
+
+/// The most lines of one arc.
+const MOST: f64 = 1.0e6;
+
+/// Points so near to each other that chords between them stay within `tolerance` mm of the arc. A chord that turns by δ
+/// is farthest in its middle:
+///
+/// ```text
+/// R (1 − cos(δ/2)) = 2R sin²(δ/4) ≤ R δ²/8
+/// ```
+pub fn lines(arc: &Arc, tolerance: f64) -> Polyline {
+    let delta = (8.0 * tolerance / arc.radius()).sqrt().min(LONGEST);
+    let count = (arc.sweep().abs() / delta).ceil().clamp(1.0, MOST);
+    let mut line = Polyline::new(arc.start(), 3);
+    for i in 1..count as usize {
+        line.push(&arc.eval(i as f64 / count));
+    }
+    line.push(&arc.end());
+    line
+}
+
+/// How far chords that turn by `delta` radians stay from an arc of `radius` mm, mm: its sagitta, and along the arc the
+/// difference between the place on the chord and that on the arc at equal shares, δ − 2 sin(δ/2) of the radius at most.
+pub fn sagitta(radius: f64, delta: f64) -> f64 {
+    let quarter = elementary::sin(0.25 * delta);
+    radius * (2.0 * quarter * quarter + (delta - 2.0 * elementary::sin(0.5 * delta)).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::arc::{Plane, Sense};
+
+    #[test]
+    fn chords_hold_the_tolerance() {
+        let at = |x, y, z| [x, y, z, 0.0, 0.0, 0.0];
+        let arc = Arc::new(Plane::Xy, Sense::Clockwise, at(10.0, 0.0, 0.0), at(10.0, 0.0, -3.0), [0.0, 0.0])
+            .unwrap();
+        for tolerance in [1.0, 0.01, 0.0001] {
+            let line = lines(&arc, tolerance);
+            let count = line.count();
+            let mut from = line.start;
+            let mut worst = 0.0f64;
+            for (i, to) in line.points().enumerate() {
+                for k in 0..=10 {
+                    let s = f64::from(k) / 10.0;
+                    let on = arc.eval((i as f64 + s) / count as f64);
+                    let p = [0, 1, 2].map(|j| from[j] + s * (to[j] - from[j]) - on[j]);
+                    worst = worst.max((p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt());
+                }
+                from = to;
+            }
+            let bound = sagitta(arc.radius(), arc.sweep().abs() / count as f64);
+            // The bound adds what is across and what is along, which are never greatest at one place.
+            assert!(worst <= bound && bound < 1.6 * tolerance, "{tolerance}: {worst} {bound}");
+            assert!(0.2 * tolerance < worst || tolerance == 1.0, "{tolerance}: {worst}");
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Every statement of the language, a row each: what is said about it, and a fixture that shows it.
+//!
+//! `read`: it does what it says, or changes nothing that is compiled. `warned`: it is left out, and a warning says so.
+//! `refused`: the file is not compiled, with the reason.
+
+use super::intent_as;
+use splinepost::dump;
+
+/// What becomes of a statement: the steps that it makes (a part of the dump), or the id of the diagnostic.
+#[derive(Debug)]
+enum Becomes {
+    Read(&'static str),
+    Warned(&'static str),
+    Refused(&'static str),
+}
+use Becomes::{Read, Refused, Warned};
+
+const HEAD: &str = "UNITS/MM\nFEDRAT/100,MMPM\nSPINDL/500,RPM,CLW\nRAPID\nGOTO/0,0,10\n";
+/// A statement behind the first move, or with `^` before all else.
+fn fixture(statement: &str) -> String {
+    match statement.strip_prefix('^') {
+        Some(statement) => format!("{statement}\n{}{TAIL}", HEAD.trim_start_matches("UNITS/MM\n")),
+        None => format!("{HEAD}{statement}\n{TAIL}"),
+    }
+}
+
+const TAIL: &str = "GOTO/1,0,0\nFINI\n";
+
+/// System, statement, what becomes of it.
+const TABLE: &[(&str, &str, Becomes)] = &[
+    // frame
+    ("iso", "PARTNO PLATE 7", Read("program PLATE_7")),
+    ("iso", "PARTNO/PLATE", Read("comment PARTNO PLATE")),
+    ("iso", "PPRINT A (REMARK) WITH $ AND 50%", Read("comment A [REMARK] WITH $ AND 50pct")),
+    ("solidworks", "PPRINT/'TEXT, QUOTED'", Read("comment TEXT, QUOTED")),
+    ("iso", "INSERT M98 P1", Refused("insert")),
+    ("iso", "MACHIN/MILL,1,2", Warned("word-left-out")),
+    ("catia", "REWIND/0", Warned("word-left-out")),
+    ("iso", "UNITS/CM", Warned("units-change")),
+    ("iso", "^UNITS/CM", Read("X 0.0 Y 0.0 Z 100.0")),
+    ("iso", "^UNITS/FEET", Read("Z 3047.9999999999995")),
+    ("iso", "^UNITS/INCHES", Read("X 0.0 Y 0.0 Z 254.0")),
+    ("iso", "UNITS/PARSEC", Refused("units")),
+    ("solidworks", "UNIT/MM", Read("")),
+    ("fusion", "MODE/MILL", Read("")),
+    ("fusion", "MODE/TURN", Refused("turning")),
+    ("iso", "STOP", Read("\nstop\n")),
+    ("iso", "OPSTOP", Read("\noptional stop\n")),
+    ("nx", "TOOL PATH/ROUGH,TOOL,EM 10", Read("comment TOOL PATH ROUGH,TOOL,EM 10")),
+    ("nx", "END-OF-PATH", Warned("word-left-out")),
+    ("catia", "SYN/'A','B'", Warned("word-left-out")),
+    ("catia", "PPFUN/3,1", Refused("word-refused")),
+    ("nx", "PAINT/COLOR,186", Warned("word-left-out")),
+    ("iso", "END", Warned("word-left-out")), // what follows it is
+    // tool
+    ("iso", "CUTTER/16,0,8,4.6,30,0,50", Read("comment CUTTER 16,0,8,4.6,30,0,50")),
+    ("nx", "TLDATA/MILL,10,0.5,75,0,0", Read("comment TLDATA MILL,10,0.5,75,0,0")),
+    ("nx", "TLDATA/WEDM,0.2,10,0", Refused("wire")),
+    ("catia", "TOOLNO/1,20.0,3.0,,120.0", Read("comment TOOLNO 1,20.0,3.0,,120.0")),
+    ("catia", "TOOLNO/1,TURN,1,0,3", Refused("turning")),
+    ("catia", "TPRINT/T1 Drill D 10", Read("comment T1 Drill D 10")),
+    ("iso", "LOADTL/4", Read("\ntool 4\n")),
+    ("iso", "LOADTL/4,1,LENGTH,100", Warned("tool-arguments")),
+    ("iso", "LOADTL/4\nLOADTL/4", Warned("tool-repeated")),
+    ("iso", "LOADTL/1.5", Refused("tool-number")),
+    ("nx", "LOAD/TOOL,4", Read("\ntool 4\n")),
+    ("nx", "LOAD/WIRE", Refused("wire")),
+    ("iso", "SELCTL/5", Warned("word-left-out")),
+    ("nx", "SELECT/TOOL,5", Warned("word-left-out")),
+    ("iso", "TURRET/2,OSETNO,1,SETOOL,0,0,0", Refused("word-refused")),
+    ("iso", "OFSTNO/FIXTUR,3", Refused("word-refused")),
+    // technology
+    ("catia", "SPINDL/2546.4790,RPM,CLW", Read("\nspindle 2546.479\n")),
+    ("nx", "SPINDL/RPM,1500,CLW", Read("\nspindle 1500\n")),
+    ("creo", "SPINDL / RPM, 9000.000000,  CLW", Read("\nspindle 9000\n")),
+    ("iso", "SPINDL/OFF", Read("\nspindle stops\n")),
+    ("iso", "SPINDL/OFF\nSPINDL/ON", Read("spindle stops\nspindle 500\n")),
+    ("iso", "SPINDL/900,CCLW", Refused("spindle-reverse")),
+    ("iso", "SPINDL/100,SFM", Refused("cutting-speed")),
+    ("iso", "SPINDL/100,SMM", Refused("cutting-speed")),
+    ("iso", "SPINDL/900,MAXRPM,5000", Warned("word-left-out")),
+    ("iso", "SPINDL/900,RANGE,2", Warned("word-left-out")),
+    ("iso", "SPINDL/ORIENT", Refused("spindle-orient")),
+    ("fusion", "SPINDL / MAIN", Warned("word-left-out")),
+    ("iso", "FEDRAT/200\nGOTO/0,1,0", Read("feed 200 lines")),
+    ("iso", "FEDRAT/MMPM,200\nGOTO/0,1,0", Read("feed 200 lines")),
+    ("iso", "FEDRAT/0.5,MMPR\nGOTO/0,1,0", Read("feed 250 lines")),
+    ("iso", "FEDRAT/10,IPM\nGOTO/0,1,0", Read("feed 254 lines")),
+    ("iso", "FEDRAT/0.01,IPR\nGOTO/0,1,0", Read("feed 127 lines")),
+    ("iso", "FEDRAT/1,FPM\nGOTO/0,1,0", Read("feed 304.79999999999995 lines")),
+    ("iso", "FEDRAT/INVERS,AUTO", Refused("feed-inverse")),
+    ("iso", "FEDRAT/INVERS,OFF", Read("")),
+    ("iso", "FEDRAT/0,MMPM", Refused("feed-range")),
+    ("iso", "COOLNT/ON", Read("\ncoolant\n")),
+    ("iso", "COOLNT/FLOOD,HIGH", Read("\ncoolant\n")),
+    ("iso", "COOLNT/OFF", Read("\ncoolant stops\n")),
+    ("iso", "COOLNT/MIST", Refused("coolant")),
+    ("iso", "COOLNT/THRU", Refused("coolant")),
+    ("iso", "DELAY/1.5", Read("\ndwell 1.5\n")),
+    ("iso", "DELAY/2,REV", Refused("dwell-revolutions")),
+    ("iso", "CUTCOM/OFF", Read("")),
+    ("iso", "CUTCOM/LEFT,XYPLAN", Refused("cutter-compensation")),
+    ("iso", "CUTCOM/ON", Refused("cutter-compensation")),
+    ("catia", "INTOL/0.025", Warned("word-left-out")),
+    ("catia", "OUTTOL/0.025", Warned("word-left-out")),
+    ("iso", "LINTOL/0.1,0.1", Warned("word-left-out")),
+    ("catia", "AUTOPS", Warned("word-left-out")),
+    ("iso", "AUXFUN/8", Refused("word-refused")),
+    ("iso", "PREFUN/54", Refused("word-refused")),
+    ("catia", "SWITCH/3", Warned("word-left-out")),
+    ("iso", "ROTATE/TABLE,90", Refused("word-refused")),
+    ("iso", "ROTABL/90,,TABLE,CLW", Refused("word-refused")),
+    ("iso", "ROTHED/90", Refused("word-refused")),
+    // axes
+    ("catia", "^ORIGIN/0,0,60", Read("comment FRAME ORIGIN 0 0 60\n")),
+    ("nx", "MSYS/0,0,20,1,0,0,0,-1,0", Warned("frame-changes")),
+    ("nx", "^MSYS/0,0,20,1,0,0,0,-1,0", Read("comment FRAME MSYS 0 0 20 1 0 0 0 -1 0\n")),
+    ("solidworks", "^CSYS/1,0,0,0,0,1,0,0,0,0,1,0", Read("comment FRAME CSYS 1 0 0 0 0 1 0 0 0 0 1 0\n")),
+    ("creo", "^$$-> CSYS / 1.0, 0.0, $\n 0.0, 0.0", Read("comment FRAME CSYS 1 0 0 0\n")),
+    (
+        "catia",
+        "^$$*CATIA0\n$$ A\n$$ 1.0 0.0 0.0 5.0\n$$ 0 1 0 0\n$$ 0 0 1 0",
+        Read("comment FRAME CATIA0 A 1 0 0 5 0 1 0 0 0 0 1 0"),
+    ),
+    ("solidworks", "^TRNTYP/WORLD,0,0,0", Read("comment FRAME TRNTYP WORLD 0 0 0\n")),
+    ("solidworks", "SETUP/START,1", Read("comment SETUP START,1")),
+    ("iso", "MULTAX", Read("")),
+    ("iso", "MULTAX/ON", Read("")),
+    ("iso", "TLAXIS/0,0,1", Read("")),
+    ("iso", "TLAXIS/0,0.5,0.866", Refused("tool-axis-tilted")),
+    // motion
+    ("iso", "RAPID\nGOTO/5,0,10", Read("rapid X 5\n")),
+    ("iso", "RAPID /\nGOTO/5,0,10\nGOTO/5,1,10", Read("rapid X 5\ncut as asked feed 100 lines")),
+    ("iso", "FROM/1,2,3", Warned("from-late")),
+    ("iso", "GOHOME/0,0,50", Read("rapid Z 50\n")),
+    ("iso", "GOHOME", Refused("home-unknown")),
+    ("iso", "GODLTA/1,2,-3", Read("    X 1.0 Y 2.0 Z 7.0\n")),
+    ("iso", "GODLTA/-3", Read("    X 0.0 Y 0.0 Z 7.0\n")),
+    ("iso", "GOTO/1,2,3,0,0,1", Read("    X 1.0 Y 2.0 Z 3.0\n")),
+    ("iso", "GOTO/1,2,3,0,1,1", Refused("tool-axis-tilted")),
+    ("iso", "GOTO/1,2,3,0,0,1,7", Refused("goto-numbers")),
+    ("iso", "GOTO/1,2", Refused("goto-numbers")),
+    (
+        "creo",
+        "CIRCLE/5,0,10,0,0,1,5\nGOTO/10,0,10",
+        Read("arc Xy CounterClockwise from X 0.0 Y 0.0 Z 10.0 to X 10.0"),
+    ),
+    ("solidworks", "CIRCLE/5,0,10,0,0,1\nGOTO/10,0,10", Read("arc Xy CounterClockwise")),
+    ("nx", "CIRCLE/5,0,10,0,0,1,5,.06,.5,10,0\nGOTO/10,0,10", Read("arc Xy Clockwise")),
+    ("fusion", "MOVARC/5,0,10,0,0,1,5,ANGLE,180\nGOTO/10,0,10", Read("arc Xy CounterClockwise")),
+    ("catia", "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/5,0,10,5),ON,(LINE/5,0,10,9,0,10)", Read("arc Xy Clockwise")),
+    ("catia", "TLON,GOFWD/(CIRCLE/5,0,10,5),ON,(LINE/5,0,10,9,0,10)", Refused("tangent-missing")),
+    ("catia", "PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,0,1))", Warned("word-left-out")),
+    // splines
+    ("nx", "NURBS/\nKNOT/1.0\nCNTRL/1,0,10\nCNTRL/2,0,10\nCNTRL/3,0,10", Read("nurbs of degree 3")),
+    ("catia", "BEGIN NURBS_SIEMENS(D=3,F=100,AXIS=VAR,LENGTH=55.0)", Refused("tool-axis-tilted")),
+    (
+        "creo",
+        "MOVNRB/M3AXIS,LENGTH,0\nMOVNRB/ON,4,8,0,4,3\nMOVNRB/1,0,0,0,0,1,1,1,1\nMOVNRB/2,0,0,10,1,0,10,2,0,10,3,0,10\nMOVNRB/OFF",
+        Read("nurbs of degree 3"),
+    ),
+    ("creo", "MOVNRB/5AXIS,LENGTH,50", Refused("tool-axis-tilted")),
+    // cycles
+    (
+        "creo",
+        "CYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,1\nGOTO/5,0,0\nCYCLE/OFF",
+        Read("rapid X 5 Y 0 Z 10\nrapid Z 1\ncut as asked feed 50"),
+    ),
+    ("creo", "CYCLE/BORE,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),
+    ("creo", "CYCLE/TAP,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),
+    ("catia", "CYCLE/DRILL, 3.0, 5.0", Refused("cycle-number")),
+    ("iso", "CALSUB/SUB1", Refused("word-refused")),
+    ("iso", "DEFSUB/SUB1", Refused("word-refused")),
+    ("iso", "ENDSUB", Refused("word-refused")),
+    ("catia", "PROBE/POINTS,1", Refused("word-refused")),
+    ("nx", "SET/UPPER,10,LOWER,0", Refused("word-refused")),
+    // what nobody knows
+    ("iso", "FROBNI/1", Refused("word-unknown")),
+    ("iso", "COOLNT/SOMEHOW", Refused("word-unknown")),
+];
+
+#[test]
+fn every_statement_is_read_warned_or_refused() {
+    let mut wrong = Vec::new();
+    for (system, statement, becomes) in TABLE {
+        let text = fixture(statement);
+        let result = intent_as(system, &text, false);
+        let fits = match (&result, becomes) {
+            (Ok(intent), Read(part)) => intent.warnings.0.is_empty() && dump::intent(intent).contains(part),
+            (Ok(intent), Warned(id)) => intent.warnings.0.iter().any(|d| d.id == *id && d.span.is_some()),
+            (Err(errors), Refused(id)) => errors.0.iter().any(|d| d.id == *id && d.span.is_some()),
+            _ => false,
+        };
+        if !fits {
+            let shown = result.map(|intent| (dump::intent(&intent), intent.warnings));
+            wrong.push(format!("{system}: {statement}\n  {becomes:?}\n  {shown:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// One mistake has one report.
+#[test]
+fn what_is_refused_is_told_once() {
+    for (system, statement, becomes) in TABLE {
+        if let Refused(id) = becomes {
+            let Err(errors) = intent_as(system, &fixture(statement), false) else {
+                continue;
+            };
+            let stops: Vec<_> =
+                errors.0.iter().filter(|d| !matches!(d.id, "word-left-out" | "tool-arguments")).collect();
+            assert_eq!(stops.len(), 1, "{system}: {statement}: {id}: {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn lenient_leaves_out_what_nobody_knows() {
+    for statement in ["FROBNI/1", "COOLNT/SOMEHOW", "INSERT M98 P1", "SPINDL/500,FROBNI"] {
+        let intent = intent_as("iso", &format!("{HEAD}{statement}\n{TAIL}"), true).expect(statement);
+        assert_eq!(intent.warnings.0.len(), 1, "{:?}", intent.warnings);
+    }
+    // What is understood and not compiled is refused all the same.
+    for statement in ["CUTCOM/LEFT", "ROTABL/90", "GOTO/1,2,3,0,1,1"] {
+        assert!(intent_as("iso", &format!("{HEAD}{statement}\n{TAIL}"), true).is_err(), "{statement}");
+    }
+}
