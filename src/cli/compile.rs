@@ -31,6 +31,9 @@ pub(crate) struct Compile {
     /// The input's language, where it cannot be told from its text
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
+    /// Make splines of runs of short lines, within the tolerance of them and with their corners
+    #[arg(long)]
+    fit: bool,
     /// Write the program without its proof, and say so in it
     #[arg(long)]
     no_verify: bool,
@@ -53,6 +56,7 @@ impl Compile {
             method: self.method.map(Into::into),
             tolerance: self.tolerance,
             no_verify: self.no_verify,
+            fit: self.fit,
         };
         // `--motion auto` overrules the machine's own choice.
         let mut machine = machine;

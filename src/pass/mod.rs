@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`choose`] | one motion for the program, where `auto` leaves it open |
 //! | [`settle`] | method and Δl, where the input leaves them open: after this the intent is exact |
+//! | [`fit`](mod@fit) | runs of lines become splines, where that is asked for |
 //! | [`interpolate`] | logarithmic curves become steps, points or pieces |
 //! | [`approximate`] | other curves that the form cannot take exactly are fitted, within `interpolate` |
 //! | [`convert`] | every curve takes the form of the motion, exactly |
@@ -16,6 +17,7 @@ pub mod approximate;
 pub mod check;
 pub mod choose;
 pub mod convert;
+pub mod fit;
 pub mod interpolate;
 pub mod limits;
 pub mod quantise;
