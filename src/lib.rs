@@ -70,6 +70,8 @@ pub struct Options {
     pub tolerance: Option<f64>,
     /// Write the program without its proof, and say so in it.
     pub no_verify: bool,
+    /// Make splines of runs of short lines.
+    pub fit: bool,
 }
 
 /// A program and its proof.
@@ -133,7 +135,8 @@ pub fn compile(
     let motion = match asked {
         Some(motion) => motion,
         None => {
-            let chosen = pass::choose::choose(&intent, &machine, tolerance)?;
+            let fitted = options.fit.then(|| pass::fit::fit(&intent, FIT_SHARE * tolerance));
+            let chosen = pass::choose::choose(&intent, fitted.as_ref(), &machine, tolerance)?;
             warnings.extend(chosen.warnings);
             chosen.value
         }
@@ -155,7 +158,7 @@ pub fn compile(
             fit: share * left,
             exact,
             asked: asked.is_some(),
-            no_verify: options.no_verify,
+            options,
         };
         match attempt.run(&intent) {
             Ok(Attempted { text, report, setup, warnings: found }) => {
@@ -194,14 +197,21 @@ struct Attempt<'a> {
     fit: f64,
     exact: bool,
     asked: bool,
-    no_verify: bool,
+    options: &'a Options,
 }
+
+/// The share of the tolerance that splines through points may take: the way between the points takes some too.
+const FIT_SHARE: f64 = 0.8;
 
 impl Attempt<'_> {
     fn run(&self, intent: &Intent) -> Result<Attempted, Failure> {
-        let Attempt { machine, tolerance, fit, exact, no_verify, .. } = *self;
+        let Attempt { machine, tolerance, fit, exact, .. } = *self;
+        let no_verify = self.options.no_verify;
         let form = self.motion.form;
-        let program = pass::interpolate::interpolate(intent, form, machine, (fit, tolerance), exact)?;
+        let splines = matches!(form, Form::Polynomial { .. } | Form::Nurbs);
+        let fitted = (self.options.fit && splines).then(|| pass::fit::fit(intent, FIT_SHARE * fit));
+        let source = fitted.as_ref().unwrap_or(intent);
+        let program = pass::interpolate::interpolate(source, form, machine, (fit, tolerance), exact)?;
         let mut program = pass::convert::convert(program, form, machine, self.asked)?;
         if no_verify && let Some(span) = program.steps.first().map(|located| located.span) {
             program.steps.insert(0, Located { step: Step::Comment("NOT VERIFIED".to_owned()), span });

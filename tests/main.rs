@@ -13,6 +13,7 @@
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
 //! | `exact` | conversions against exact rational arithmetic |
 //! | `fits` | few cubics, against the best there are |
+//! | `lines` | runs of lines as splines |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
@@ -27,6 +28,7 @@ mod exact;
 mod fits;
 mod golden;
 mod grammar;
+mod lines;
 mod machine;
 mod oracle;
 mod paper;

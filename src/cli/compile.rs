@@ -36,6 +36,9 @@ pub(crate) struct Compile {
     map: Option<String>,
     #[command(flatten)]
     reading: Reading,
+    /// Make splines of runs of short lines, within the tolerance of them and with their corners
+    #[arg(long)]
+    fit: bool,
     /// Write the program without its proof, and say so in it
     #[arg(long)]
     no_verify: bool,
@@ -59,6 +62,7 @@ impl Compile {
             method: self.method.map(Into::into),
             tolerance: self.tolerance,
             no_verify: self.no_verify,
+            fit: self.fit,
         };
         // `--motion auto` overrules the machine's own choice.
         let mut machine = machine;

@@ -47,6 +47,7 @@ impl Verify {
             method: self.method.map(Into::into),
             tolerance: self.tolerance,
             no_verify: false,
+            fit: false,
         };
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);

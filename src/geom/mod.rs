@@ -16,6 +16,7 @@
 //! | [`fit`] | few pieces within a tolerance |
 //! | [`chain`] | a curve of many pieces as one function |
 //! | [`geometric`] | few pieces within a tolerance of any curve |
+//! | [`smooth`] | runs of points to splines, corners kept |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
 //! | [`follow`] | the same for any two paths of pieces |
 
@@ -32,3 +33,4 @@ pub mod knots;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;
+pub mod smooth;

@@ -10,12 +10,13 @@ use crate::ir::{Curve, Cut, Intent, Method, Program, Role};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::Axis;
 
-/// The motion for an intent.
+/// The motion for an intent. `fitted` is what splines are made of where runs of lines are to become some.
 ///
 /// # Errors
 /// No motion of the machine can hold the tolerance.
 pub fn choose(
     intent: &Intent,
+    fitted: Option<&Intent>,
     machine: &Machine,
     tolerance: f64,
 ) -> Result<Warned<&'static Motion>, Diagnostics> {
@@ -27,7 +28,8 @@ pub fn choose(
         return Ok(Warned { value: motion, warnings });
     }
     let blocked = machine.axes_without_spline(&moving_axes(intent));
-    let straight = paths(intent).all(|curve| match curve {
+    let source = fitted.unwrap_or(intent);
+    let straight = paths(source).all(|curve| match curve {
         Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
         Curve::Lines(_) | Curve::Arc(_) => true,
         Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
@@ -48,7 +50,8 @@ pub fn choose(
         if !allowed {
             continue;
         }
-        match blocks(intent, motion.form, machine, tolerance) {
+        let of = if motion.form == Form::Lines { intent } else { source };
+        match blocks(of, motion.form, machine, tolerance) {
             Ok(n) if best.is_none_or(|(fewest, _)| n < fewest) => best = Some((n, motion)),
             Ok(_) => {}
             Err(error) => errors.extend(error),

@@ -7,6 +7,7 @@
 //! | [`settle`] | method and Δl, where the input leaves them open: after this the intent is exact |
 //! | [`place`] | work offsets, where an axis wraps or sections are to be alike |
 //! | [`stretch`] | what F has to be, and where a path is cut so that it can be |
+//! | [`fit`](mod@fit) | runs of lines become splines, where that is asked for |
 //! | [`interpolate`] | logarithmic curves become steps, points or pieces |
 //! | [`approximate`] | other curves that the form cannot take exactly are fitted, within `interpolate` |
 //! | [`convert`] | every curve takes the form of the motion, exactly |
@@ -19,6 +20,7 @@ pub mod arcs;
 pub mod check;
 pub mod choose;
 pub mod convert;
+pub mod fit;
 pub mod interpolate;
 pub mod limits;
 pub mod place;

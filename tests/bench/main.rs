@@ -132,5 +132,25 @@ fn points_of_cl_data(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, odd_even, direct, whole, million, points_of_cl_data);
+/// Runs of points as splines: from ten thousand points to a million, in points a second, which should stay level.
+fn fit(c: &mut Criterion) {
+    let mut group = c.benchmark_group("fit");
+    group.sample_size(10);
+    for count in [10_000usize, 100_000, 1_000_000] {
+        let points: Vec<splinepost::units::Position> = (0..count)
+            .map(|i| {
+                let x = 0.05 * i as f64;
+                let fine = splinepost::geom::elementary::sin(0.3 * x);
+                [x, 5.0 * fine, 0.5 * fine * fine, 0.0, 0.0, 0.0]
+            })
+            .collect();
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_function(count.to_string(), |b| {
+            b.iter(|| splinepost::geom::smooth::spline(black_box(&points), 0.01).is_some());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, odd_even, direct, whole, million, points_of_cl_data, fit);
 criterion_main!(benches);

@@ -1,0 +1,29 @@
+//! Runs of lines become splines, where that is asked for.
+//!
+//! The intent stays the lines: what was made of them is compared with them in the end.
+
+use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Metric;
+use crate::geom::smooth;
+use crate::ir::{Curve, Cut, Intent, Role, Step};
+use crate::units::{Kind, Position};
+
+/// The intent with each path of lines that is long enough as one C2 cubic B-spline, corners kept, within `tolerance` mm
+/// of its points. Approaches stay lines.
+pub fn fit(intent: &Intent, tolerance: f64) -> Intent {
+    let mut fitted = intent.clone();
+    let kinds: Vec<Kind> = intent.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
+    let metric = Metric::new(&kinds, intent.radius());
+    let scaled = |p: &Position| metric.scaled(&Bezier::line(*p, *p)).start();
+    let unscaled = |p: &Position| metric.unscaled(&Bezier::line(*p, *p)).start();
+    for located in &mut fitted.program.steps {
+        let Step::Cut(Cut { role: Role::Path, curve, .. }) = &mut located.step else { continue };
+        let Curve::Lines(line) = curve else { continue };
+        let points: Vec<Position> =
+            std::iter::once(line.start).chain(line.points()).map(|p| scaled(&p)).collect();
+        if let Some(spline) = smooth::spline(&points, tolerance) {
+            *curve = Curve::Nurbs(spline.mapped(unscaled));
+        }
+    }
+    fitted
+}
