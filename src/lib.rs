@@ -29,6 +29,7 @@
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
 //! | [`points`] | the table of interpolated points |
+//! | [`simulate`] | the path as a control would run it |
 //! | [`summary`] | what a compilation tells |
 
 pub mod decimal;
@@ -41,6 +42,7 @@ pub mod ir;
 pub mod machine;
 pub mod pass;
 pub mod points;
+pub mod simulate;
 pub mod source;
 pub mod summary;
 pub mod tables;

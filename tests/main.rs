@@ -13,6 +13,7 @@
 //! | `exact` | conversions against exact rational arithmetic |
 //! | `fits` | few cubics, against the best there are |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
+//! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
 //! | `cli` | exit codes, files, streams |
@@ -32,5 +33,6 @@ mod readme;
 mod robust;
 mod roundtrip;
 mod schema;
+mod simulate;
 mod support;
 mod tidy;
