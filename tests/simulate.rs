@@ -1,5 +1,7 @@
 //! The table of `docs/simulation.md`: curves with the paper's kind of difficulty, at 6 m/min and 1 ms.
 
+mod runs;
+
 use crate::support::{bless, fail_on, folder};
 use splinepost::geom::elementary::{cos, sin};
 use splinepost::geom::logcurve::{Cutter, Hand, Law as Angle, LogCurve};

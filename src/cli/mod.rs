@@ -9,6 +9,7 @@ mod io;
 mod machines;
 mod man;
 mod schema;
+mod simulate;
 mod subject;
 mod verify;
 
@@ -47,6 +48,7 @@ enum Command {
     Compile(compile::Compile),
     Interpolate(interpolate::Interpolate),
     Verify(verify::Verify),
+    Simulate(simulate::Simulate),
     Check(check::Check),
     Dump(dump::Dump),
     Machines(machines::Machines),
@@ -84,6 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Compile(command) => command.run(&console, &mut sources),
         Command::Interpolate(command) => command.run(&console, &mut sources),
         Command::Verify(command) => command.run(&console, &mut sources),
+        Command::Simulate(command) => command.run(&console, &mut sources),
         Command::Check(command) => command.run(&console, &mut sources),
         Command::Dump(command) => command.run(&console, &mut sources),
         Command::Machines(command) => command.run(&console),

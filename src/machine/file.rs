@@ -144,7 +144,14 @@ impl Reader {
                 "text.extension",
             )?,
         };
-        let rotary_feed = match file.feed.and_then(|feed| feed.rotary) {
+        let feed = file.feed.unwrap_or_default();
+        let block_time = feed.block_time.as_ref().map(|time| *time.get_ref());
+        if let Some(time) =
+            feed.block_time.filter(|time| !(0.0 < *time.get_ref() && time.get_ref().is_finite()))
+        {
+            self.error("block-time", "block_time is a number of milliseconds greater than zero", time.span());
+        }
+        let rotary_feed = match feed.rotary {
             None => self.or(None, base.map(|b| b.rotary_feed), "feed.rotary")?,
             Some(word) => match word.get_ref().as_str() {
                 "free" => RotaryFeed::Free,
@@ -184,6 +191,7 @@ impl Reader {
             digits: digits?,
             text,
             rotary_feed,
+            block_time: block_time.or(base.and_then(|b| b.block_time)),
             spline,
             frame,
         })
@@ -255,7 +263,7 @@ impl Reader {
                     if !x.is_finite() || (positive && x <= 0.0) {
                         self.error(
                             "axis-limit",
-                            "a limit is a finite number, a speed greater than zero",
+                            "a limit is a finite number, a speed or an acceleration greater than zero",
                             value.span(),
                         );
                     }
@@ -266,6 +274,8 @@ impl Reader {
             let max_span = own.max.as_ref().map(Spanned::span);
             number(own.max, &mut limits.max, false);
             number(own.max_speed, &mut limits.max_speed, true);
+            number(own.max_acceleration, &mut limits.max_acceleration, true);
+            number(own.max_step, &mut limits.max_step, true);
             if let (Some(min), Some(max)) = (limits.min, limits.max)
                 && max <= min
             {

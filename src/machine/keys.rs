@@ -15,7 +15,17 @@ pub const KEYS: &[Key] = &[
     Key::value("motion"),
     Key::value("tolerance"),
     Key::table("axes", &[Key::value("linear"), Key::value("rotary")]),
-    Key::each("axis", &[Key::value("kind"), Key::value("min"), Key::value("max"), Key::value("max_speed")]),
+    Key::each(
+        "axis",
+        &[
+            Key::value("kind"),
+            Key::value("min"),
+            Key::value("max"),
+            Key::value("max_speed"),
+            Key::value("max_acceleration"),
+            Key::value("max_step"),
+        ],
+    ),
     Key::table(
         "digits",
         &[
@@ -36,7 +46,7 @@ pub const KEYS: &[Key] = &[
             Key::value("extension"),
         ],
     ),
-    Key::table("feed", &[Key::value("rotary")]),
+    Key::table("feed", &[Key::value("rotary"), Key::value("block_time")]),
     Key::table(
         "spline",
         &[
@@ -124,6 +134,12 @@ pub(super) struct AxisFile {
     /// Greatest speed at feed, mm/min or degrees/min.
     #[schemars(with = "Option<f64>")]
     pub(super) max_speed: Option<Spanned<f64>>,
+    /// Greatest acceleration, mm/s² or degrees/s².
+    #[schemars(with = "Option<f64>")]
+    pub(super) max_acceleration: Option<Spanned<f64>>,
+    /// Greatest step in speed at the joint of two blocks, mm/min or degrees/min.
+    #[schemars(with = "Option<f64>")]
+    pub(super) max_step: Option<Spanned<f64>>,
 }
 
 /// How many decimals an address takes, at most 9.
@@ -170,6 +186,9 @@ pub(super) struct FeedFile {
     /// free: F is the speed of the linear axes and rotary ones go along; degrees-as-mm: a degree counts as a mm.
     #[schemars(with = "Option<String>", extend("enum" = ["free", "degrees-as-mm"]))]
     pub(super) rotary: Option<Spanned<String>>,
+    /// How long the control takes to make a block ready, ms.
+    #[schemars(with = "Option<f64>")]
+    pub(super) block_time: Option<Spanned<f64>>,
 }
 
 /// What splines the machine takes.

@@ -53,6 +53,8 @@ pub struct Machine {
     pub text: Text,
     /// How F counts rotary axes.
     pub rotary_feed: RotaryFeed,
+    /// How long the control takes to make a block ready, ms.
+    pub block_time: Option<f64>,
     /// What its splines take.
     pub spline: Spline,
     /// The lines round a program.
@@ -79,6 +81,10 @@ pub struct AxisLimits {
     pub max: Option<f64>,
     /// The greatest speed at feed, mm/min or degrees/min.
     pub max_speed: Option<f64>,
+    /// The greatest acceleration, mm/s² or degrees/s².
+    pub max_acceleration: Option<f64>,
+    /// The greatest step in speed at the joint of two blocks, mm/min or degrees/min.
+    pub max_step: Option<f64>,
 }
 
 /// How many decimals an address takes.

@@ -240,22 +240,26 @@ impl<'p, C: Parametric> Cycles<'p, C> {
             }
         }
     }
+}
 
-    /// The greatest distance of the curve from the chord to `u` on piece `last`.
-    fn chord_error(&self, last: usize, u: f64, at: &Position) -> f64 {
-        let mut worst = 0.0f64;
-        for i in self.piece..=last {
-            let piece = &self.pieces[i];
-            let from = if i == self.piece { self.u } else { piece.from };
-            let to = if i == last { u } else { piece.to };
-            let middle = piece.curve.at(0.5 * (from + to));
-            worst = worst.max(piece.surface.from_chord(&middle, &self.at, at));
-            if i != last {
-                worst = worst.max(piece.surface.from_chord(&piece.curve.at(to), &self.at, at));
-            }
+/// The greatest distance of the curve between two places, each a piece and its parameter, from the chord between them.
+pub fn chord_error<C: Parametric>(
+    pieces: &[Piece<C>],
+    first: (usize, f64, &Position),
+    last: (usize, f64, &Position),
+) -> f64 {
+    let mut worst = 0.0f64;
+    for i in first.0..=last.0 {
+        let piece = &pieces[i];
+        let from = if i == first.0 { first.1 } else { piece.from };
+        let to = if i == last.0 { last.1 } else { piece.to };
+        let middle = piece.curve.at(0.5 * (from + to));
+        worst = worst.max(piece.surface.from_chord(&middle, first.2, last.2));
+        if i != last.0 {
+            worst = worst.max(piece.surface.from_chord(&piece.curve.at(to), first.2, last.2));
         }
-        worst
     }
+    worst
 }
 
 impl<C: Parametric> Iterator for Cycles<'_, C> {
@@ -283,7 +287,7 @@ impl<C: Parametric> Iterator for Cycles<'_, C> {
         let u = next.unwrap_or(piece.to);
         let at = piece.curve.at(u);
         let chord = piece.counts.distance(&self.at, &at);
-        let chord_error = self.chord_error(i, u, &at);
+        let chord_error = chord_error(self.pieces, (self.piece, self.u, &self.at), (i, u, &at));
         // The last cycle is as short as what is left.
         let (time, wanted) = match next {
             Some(_) => (self.law.cycle, asked),
