@@ -120,7 +120,7 @@ pub fn simulate(
 fn whole_length(piece: &Piece<Shape>) -> f64 {
     let parts = match piece.curve {
         Shape::Line(..) => 1,
-        Shape::Polynomial(_) | Shape::Rational(_) | Shape::Logarithmic(_) => 64,
+        Shape::Polynomial(_) | Shape::Rational(_) | Shape::Logarithmic(_) | Shape::Formula(_) => 64,
     };
     let at = |i: i32| piece.from + (piece.to - piece.from) * f64::from(i) / f64::from(parts);
     (0..parts).map(|i| profile::length(&piece.curve, &piece.counts, at(i), at(i + 1))).sum()

@@ -3,14 +3,16 @@
 mod runs;
 
 use crate::support::{bless, fail_on, folder};
-use splinepost::geom::elementary::{cos, sin};
+use splinepost::geom::expr::curve::Formula;
+use splinepost::geom::expr::parse::parse;
 use splinepost::geom::logcurve::{Cutter, Hand, Law as Angle, LogCurve};
 use splinepost::geom::nurbs::Nurbs;
 use splinepost::simulate::partition::{Cycle, Cycles, Law, Method, Parametric, Piece, Weights};
 use splinepost::simulate::shape::Shape;
-use splinepost::units::{DEGREES, Position};
+use splinepost::units::DEGREES;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// F = 6 m/min, mm/s.
 const FEED: f64 = 100.0;
@@ -20,67 +22,18 @@ const CYCLE: f64 = 1e-3;
 
 const XYZ: Weights = Weights([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
 
-/// A plane curve by its value and its first derivative.
-type Plane = fn(f64) -> [[f64; 2]; 2];
-
-/// A curve of the table, one of the plane or a shape.
-#[derive(Clone)]
-enum Any {
-    Plane(Plane),
-    Shape(Shape),
-}
-
-impl Parametric for Any {
-    fn at(&self, u: f64) -> Position {
-        self.jet(u)[0]
-    }
-
-    /// The second derivative by central differences: it is for the column of radii only.
-    fn jet(&self, u: f64) -> [Position; 3] {
-        match self {
-            Any::Plane(curve) => {
-                let flat = |[x, y]: [f64; 2]| [x, y, 0.0, 0.0, 0.0, 0.0];
-                let [c, rate] = curve(u);
-                let h = 1e-5;
-                let ([_, before], [_, after]) = (curve(u - h), curve(u + h));
-                [flat(c), flat(rate), flat([0, 1].map(|i| (after[i] - before[i]) / (2.0 * h)))]
-            }
-            Any::Shape(shape) => shape.jet(u),
-        }
-    }
-}
-
-fn ellipse(u: f64) -> [[f64; 2]; 2] {
-    [[20.0 * cos(u), 5.1 * sin(u)], [-20.0 * sin(u), 5.1 * cos(u)]]
-}
-
-fn lissajous(u: f64) -> [[f64; 2]; 2] {
-    [[30.0 * cos(u), 30.0 * sin(2.0 * u)], [-30.0 * sin(u), 60.0 * cos(2.0 * u)]]
-}
-
-/// x = a cos u/(1 + sin²u), y = x sin u.
-fn lemniscate(u: f64) -> [[f64; 2]; 2] {
-    let (a, s, c) = (4.0, sin(u), cos(u));
-    let d = 1.0 + s * s;
-    let (x, x1) = (a * c / d, -a * s / d - 2.0 * a * s * c * c / (d * d));
-    [[x, x * s], [x1, x1 * s + x * c]]
-}
-
-/// x = r(cos u + u sin u), y = r(sin u − u cos u); its cusp is at u = 0.
-fn involute(u: f64) -> [[f64; 2]; 2] {
-    let (s, c) = (sin(u), cos(u));
-    [[10.0 * (c + u * s), 10.0 * (s - u * c)], [10.0 * u * c, 10.0 * u * s]]
-}
-
 /// One curve of the table.
 struct Entry {
     name: &'static str,
     what: &'static str,
-    pieces: Vec<Piece<Any>>,
+    pieces: Vec<Piece<Shape>>,
 }
 
-fn plane(name: &'static str, what: &'static str, curve: Plane, from: f64, to: f64) -> Entry {
-    let piece = Piece { curve: Any::Plane(curve), from, to, feed: FEED, counts: XYZ, surface: XYZ };
+fn plane(name: &'static str, what: &'static str, [x, y]: [&str; 2], from: f64, to: f64) -> Entry {
+    let axes = [x, y].map(|text| parse(text, &[]).expect("an expression")).to_vec();
+    let formula = Formula::new(axes, from, to).expect("a smooth curve");
+    let piece =
+        Piece { curve: Shape::Formula(Arc::new(formula)), from, to, feed: FEED, counts: XYZ, surface: XYZ };
     Entry { name, what, pieces: vec![piece] }
 }
 
@@ -98,7 +51,7 @@ fn cutter() -> Entry {
     let curve = LogCurve::new(cutter, 0.0).expect("a cutter");
     let counts = Weights([1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
     let surface = Weights([1.0, 1.0, 1.0, curve.max_radius() / DEGREES, 0.0, 0.0]);
-    let curve = Any::Shape(Shape::Logarithmic(Box::new(curve)));
+    let curve = Shape::Logarithmic(Box::new(curve));
     let pieces = vec![Piece { curve, from: 0.0, to: 30.0, feed: FEED, counts, surface }];
     Entry { name: "logarithmic", what: "the paper's cutter, D1 = 10, a degree of A as a mm", pieces }
 }
@@ -109,25 +62,36 @@ fn nurbs() -> Entry {
     let knots = vec![0., 0., 0., 0., 1., 2., 3., 4., 4., 4., 4.];
     let weights = vec![1.0, 0.4, 2.5, 0.7, 3.0, 0.5, 1.0];
     let spline = Nurbs::new(3, knots, points, weights).expect("a spline");
-    let piece =
-        |shape| Piece { curve: Any::Shape(shape), from: 0.0, to: 1.0, feed: FEED, counts: XYZ, surface: XYZ };
+    let piece = |shape| Piece { curve: shape, from: 0.0, to: 1.0, feed: FEED, counts: XYZ, surface: XYZ };
     let pieces = spline.beziers().map(|(bezier, _)| piece(Shape::bezier(&bezier))).collect();
     Entry { name: "NURBS", what: "cubic, seven points, weights 0.4 to 3", pieces }
 }
 
 fn entries() -> Vec<Entry> {
     vec![
-        plane("ellipse", "20 cos u, 5.1 sin u", ellipse, 0.0, TAU),
-        plane("Lissajous", "30 cos u, 30 sin 2u", lissajous, 0.0, TAU),
-        plane("lemniscate", "Bernoulli's, a = 4", lemniscate, 0.0, TAU),
-        plane("involute", "of a circle of 10, u from 0.5 to 6", involute, 0.5, 6.0),
+        plane("ellipse", "20 cos u, 5.1 sin u", ["20*cos(u)", "5.1*sin(u)"], 0.0, TAU),
+        plane("Lissajous", "30 cos u, 30 sin 2u", ["30*cos(u)", "30*sin(2*u)"], 0.0, TAU),
+        plane(
+            "lemniscate",
+            "Bernoulli's, a = 4",
+            ["4*cos(u)/(1 + sin(u)^2)", "4*sin(u)*cos(u)/(1 + sin(u)^2)"],
+            0.0,
+            TAU,
+        ),
+        plane(
+            "involute",
+            "of a circle of 10, u from 0.5 to 6",
+            ["10*(cos(u) + u*sin(u))", "10*(sin(u) - u*cos(u))"],
+            0.5,
+            6.0,
+        ),
         cutter(),
         nurbs(),
     ]
 }
 
 /// The smallest radius of curvature ‖c′‖³/√(‖c′‖²‖c″‖² − (c′·c″)²) at ten thousand places of each piece.
-fn radius(pieces: &[Piece<Any>]) -> f64 {
+fn radius(pieces: &[Piece<Shape>]) -> f64 {
     let mut least = f64::INFINITY;
     for piece in pieces {
         for i in 0..=10_000 {
@@ -142,7 +106,7 @@ fn radius(pieces: &[Piece<Any>]) -> f64 {
 }
 
 /// The greatest feed error and chord error, and how many cycles there are.
-fn worst(pieces: &[Piece<Any>], method: Method, tolerance: f64) -> (f64, f64, usize) {
+fn worst(pieces: &[Piece<Shape>], method: Method, tolerance: f64) -> (f64, f64, usize) {
     let cycles: Vec<Cycle> = Cycles::new(pieces, Law { method, cycle: CYCLE, tolerance }).collect();
     let feed = cycles.iter().map(|c| c.feed_error.abs()).fold(0.0, f64::max);
     (feed, cycles.iter().map(|c| c.chord_error).fold(0.0, f64::max), cycles.len())

@@ -10,6 +10,7 @@
 //! | [`oddeven`] | its points by the odd-even third-order steps |
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
+//! | [`expr`] | expressions in one parameter, their derivatives and bounds |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
 //! | [`knots`] | clamping, degree elevation, by the blossom |
 //! | [`fit`] | few pieces within a tolerance |
@@ -23,6 +24,7 @@ pub mod bezier;
 pub mod chain;
 pub mod deviation;
 pub mod elementary;
+pub mod expr;
 pub mod fit;
 pub mod follow;
 pub mod geometric;

@@ -197,7 +197,7 @@ fn level(piece: &Piece<Shape>, at: &[f64; 5], limits: &Limits, (cap, acceleratio
 fn cut(piece: &Piece<Shape>, number: usize, limits: &Limits, cycle: f64, cells: &mut Vec<Cell>) {
     let straight = match piece.curve {
         Shape::Line(..) => true,
-        Shape::Polynomial(_) | Shape::Rational(_) | Shape::Logarithmic(_) => false,
+        Shape::Polynomial(_) | Shape::Rational(_) | Shape::Logarithmic(_) | Shape::Formula(_) => false,
     };
     let mut stack = vec![(piece.from, piece.to, 0)];
     while let Some((from, to, depth)) = stack.pop() {

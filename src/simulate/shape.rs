@@ -11,8 +11,10 @@
 use super::partition::Parametric;
 use crate::geom::bernstein::{Bernstein, binomial};
 use crate::geom::bezier::{Bezier, MAX_PIECE_DEGREE};
+use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::LogCurve;
 use crate::units::{DEGREES, MAX_AXES, Position};
+use std::sync::Arc;
 
 /// Coefficients aₖ of tᵏ for each axis.
 type Powers = [Position; MAX_PIECE_DEGREE + 1];
@@ -28,6 +30,8 @@ pub enum Shape {
     Rational(Box<Rational>),
     /// A cutter's flute, by X.
     Logarithmic(Box<LogCurve>),
+    /// Coordinates as expressions in u.
+    Formula(Arc<Formula>),
 }
 
 /// A polynomial in powers of t.
@@ -134,6 +138,7 @@ impl Shape {
         match self {
             Shape::Line(..) | Shape::Polynomial(_) | Shape::Rational(_) => (0.0, 1.0),
             Shape::Logarithmic(curve) => (0.0, curve.end()),
+            Shape::Formula(formula) => formula.range(),
         }
     }
 }
@@ -149,6 +154,7 @@ impl Parametric for Shape {
                 rational.above.at(u).map(|x| x / w)
             }
             Shape::Logarithmic(curve) => curve.position(u),
+            Shape::Formula(formula) => formula.at(u),
         }
     }
 
@@ -171,6 +177,11 @@ impl Parametric for Shape {
                 let bend = -slope * curve.beta() / (1.0 + curve.beta() * u);
                 let rate = [1.0, curve.y_slope(), curve.z_slope(), slope * DEGREES, 0.0, 0.0];
                 [curve.position(u), rate, [0.0, 0.0, 0.0, bend * DEGREES, 0.0, 0.0]]
+            }
+            Shape::Formula(formula) => {
+                // The third coefficient of a series is c″/2.
+                let [c, rate, half] = formula.jet::<3>(u);
+                [c, rate, half.map(|x| 2.0 * x)]
             }
         }
     }
