@@ -30,6 +30,7 @@
 //! | [`verify`] | the proof |
 //! | [`points`] | the table of interpolated points |
 //! | [`simulate`] | the path as a control would run it |
+//! | [`plot`] | pictures |
 //! | [`summary`] | what a compilation tells |
 
 pub mod decimal;
@@ -41,6 +42,7 @@ pub mod geom;
 pub mod ir;
 pub mod machine;
 pub mod pass;
+pub mod plot;
 pub mod points;
 pub mod simulate;
 pub mod source;

@@ -13,6 +13,7 @@
 //! | `exact` | conversions against exact rational arithmetic |
 //! | `fits` | few cubics, against the best there are |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
+//! | `plot` | pages and sheets, and what they show |
 //! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
@@ -29,6 +30,7 @@ mod grammar;
 mod machine;
 mod oracle;
 mod paper;
+mod plot;
 mod readme;
 mod robust;
 mod roundtrip;

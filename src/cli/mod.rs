@@ -8,6 +8,7 @@ mod interpolate;
 mod io;
 mod machines;
 mod man;
+mod plot;
 mod schema;
 mod simulate;
 mod subject;
@@ -49,6 +50,7 @@ enum Command {
     Interpolate(interpolate::Interpolate),
     Verify(verify::Verify),
     Simulate(simulate::Simulate),
+    Plot(plot::Plot),
     Check(check::Check),
     Dump(dump::Dump),
     Machines(machines::Machines),
@@ -87,6 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Interpolate(command) => command.run(&console, &mut sources),
         Command::Verify(command) => command.run(&console, &mut sources),
         Command::Simulate(command) => command.run(&console, &mut sources),
+        Command::Plot(command) => command.run(&console, &mut sources),
         Command::Check(command) => command.run(&console, &mut sources),
         Command::Dump(command) => command.run(&console, &mut sources),
         Command::Machines(command) => command.run(&console),

@@ -90,33 +90,42 @@ pub(super) struct Run {
 }
 
 impl LawArguments {
-    /// The track of an input or a program.
-    pub(super) fn track(&self, subject: &Subject, sources: &mut Sources) -> Result<Run, Diagnostics> {
-        let (mut track, machine, tolerance, warnings) = match subject.understand(sources)? {
+    /// The track of an input or a program, and how it is run.
+    pub(super) fn run_of(
+        &self,
+        understood: &Understood,
+        subject: &Subject,
+        sources: &mut Sources,
+        polygons: bool,
+    ) -> Result<Run, Diagnostics> {
+        let own;
+        let (mut track, machine, tolerance, warnings) = match understood {
             Understood::Program(machine, reading) => {
                 let tolerance = machine.tolerance;
-                let setting = Setting { machine: Some(&machine), feed: self.feed, tolerance };
+                let setting =
+                    Setting { machine: Some(machine), feed: self.feed, tolerance, radius: None, polygons };
                 let track = Track::of_decimals(&reading.value.decimals, &setting)?;
-                (track, Some(*machine), tolerance, reading.warnings)
+                (track, Some(machine.as_ref()), tolerance, reading.warnings.clone())
             }
             Understood::Input(intent) => {
-                let machine = subject.machine(sources)?;
-                let own = intent.tolerance.map(|(mm, _)| mm);
-                let tolerance = own.or(machine.as_ref().map(|m| m.tolerance)).unwrap_or(0.001);
-                let setting = Setting { machine: machine.as_ref(), feed: self.feed, tolerance };
+                own = subject.machine(sources)?;
+                let stated = intent.tolerance.map(|(mm, _)| mm);
+                let tolerance = stated.or(own.as_ref().map(|m| m.tolerance)).unwrap_or(0.001);
+                let radius = intent.radius;
+                let setting = Setting { machine: own.as_ref(), feed: self.feed, tolerance, radius, polygons };
                 let track = Track::of_program(&intent.program, &setting)?;
-                (track, machine, tolerance, intent.warnings)
+                (track, own.as_ref(), tolerance, intent.warnings.clone())
             }
         };
         track.find_lines(sources);
-        let limits = machine.as_ref().map_or(Limits::NONE, |m| Limits::of(m, &track.axes, self.cycle));
+        let limits = machine.map_or(Limits::NONE, |m| Limits::of(m, &track.axes, self.cycle));
         let method = match self.method {
             MethodName::Bisection => Method::Bisection,
             MethodName::Secant => Method::Secant,
             MethodName::Taylor => Method::Taylor,
         };
         let law = Law { method, cycle: self.cycle, tolerance: self.feed_error };
-        let block_time = machine.as_ref().and_then(|m| m.block_time);
+        let block_time = machine.and_then(|m| m.block_time);
         Ok(Run { track, options: Options { law, limits, block_time, tolerance }, warnings })
     }
 }
@@ -127,7 +136,8 @@ const PORTION: usize = 1 << 16;
 impl Simulate {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
-        let Run { track, options, warnings, .. } = self.law.track(&self.subject, sources)?;
+        let understood = self.subject.understand(sources)?;
+        let Run { track, options, warnings } = self.law.run_of(&understood, &self.subject, sources, false)?;
         let format = match self.format {
             Format::Csv => rows::Format::Csv,
             Format::Json => rows::Format::Json,

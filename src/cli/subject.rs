@@ -40,6 +40,11 @@ impl Subject {
         (language.understand)(sources).map(|intent| Understood::Input(Box::new(intent)))
     }
 
+    /// Whether it is this file, or its machine's.
+    pub(super) fn is(&self, path: &str) -> bool {
+        io::same_file(path, &self.input) || self.to.as_ref().is_some_and(|to| io::same_file(path, to))
+    }
+
     /// The machine that --to names.
     pub(super) fn machine(&self, sources: &mut Sources) -> Result<Option<Machine>, Diagnostics> {
         self.to.as_deref().map(|to| machine(to, sources)).transpose()

@@ -9,7 +9,8 @@
 //! | `rotary = "degrees-as-mm"` | all axes, a degree as a millimetre |
 //! | a piece that moves none of these | the rotary axes, F in degrees/min |
 //!
-//! The chord error of a cutter's path counts A at the cutter's greatest radius; of other paths it counts what F does.
+//! The chord error of a cutter's path counts A at the cutter's greatest radius, of a job with a radius at that; of other
+//! paths it counts what F does.
 
 use super::partition::{Parametric, Piece, Weights};
 use super::shape::Shape;
@@ -55,6 +56,8 @@ pub struct Track {
     pub places: Vec<Place>,
     /// The points that the control leads a spline of its own through were joined by lines.
     pub through: bool,
+    /// Control polygons, where they are asked for.
+    pub polygons: Vec<Vec<Position>>,
 }
 
 /// How a program is to be run.
@@ -66,6 +69,10 @@ pub struct Setting<'m> {
     pub feed: Option<f64>,
     /// mm, for odd-even steps whose Δl the input leaves open.
     pub tolerance: f64,
+    /// The radius at which rotary axes count in chord errors, mm, where the input states one.
+    pub radius: Option<f64>,
+    /// Whether control polygons are kept.
+    pub polygons: bool,
 }
 
 impl Track {
@@ -142,8 +149,14 @@ struct Builder<'m> {
 
 impl<'m> Builder<'m> {
     fn new(axes: Axes, setting: Setting<'m>) -> Builder<'m> {
-        let track =
-            Track { axes, events: Vec::new(), pieces: Vec::new(), places: Vec::new(), through: false };
+        let track = Track {
+            axes,
+            events: Vec::new(),
+            pieces: Vec::new(),
+            places: Vec::new(),
+            through: false,
+            polygons: Vec::new(),
+        };
         let place = Place { span: Span::new(crate::source::SourceId::INPUT, 0..0), line: 0 };
         Builder { track, setting, place, feed: 0.0, position: [None; MAX_AXES], open: 0 }
     }
@@ -216,7 +229,7 @@ impl<'m> Builder<'m> {
         }
         let counts = self.counts(reach);
         let mut surface = counts;
-        if let Some(radius) = radius {
+        if let Some(radius) = radius.or(self.setting.radius) {
             for (i, (_, kind)) in self.track.axes.as_slice().iter().enumerate() {
                 if *kind == Kind::Rotary {
                     surface.0[i] = radius / DEGREES;
@@ -261,6 +274,12 @@ impl<'m> Builder<'m> {
         self.piece(Shape::bezier(piece), &reach, None, line);
     }
 
+    fn polygon(&mut self, points: &[Position]) {
+        if self.setting.polygons {
+            self.track.polygons.push(points.to_vec());
+        }
+    }
+
     fn curve(&mut self, curve: &Curve) -> Result<(), Diagnostics> {
         match curve {
             Curve::Lines(polyline) => self.lines(polyline),
@@ -268,8 +287,16 @@ impl<'m> Builder<'m> {
                 self.track.through = true;
                 self.lines(polyline);
             }
-            Curve::Polynomial(pieces) => pieces.iter().for_each(|piece| self.bezier(piece, 0)),
-            Curve::Nurbs(nurbs) => nurbs.beziers().for_each(|(piece, _)| self.bezier(&piece, 0)),
+            Curve::Polynomial(pieces) => {
+                for piece in pieces {
+                    self.polygon(piece.control_points());
+                    self.bezier(piece, 0);
+                }
+            }
+            Curve::Nurbs(nurbs) => {
+                self.polygon(nurbs.points());
+                nurbs.beziers().for_each(|(piece, _)| self.bezier(&piece, 0));
+            }
             Curve::Logarithmic(log) => self.logarithmic(log)?,
         }
         Ok(())
@@ -316,13 +343,16 @@ impl<'m> Builder<'m> {
             Written::Polynomial(polynomial) => {
                 let mut start = polynomial.start;
                 for block in &polynomial.blocks {
-                    self.bezier(&block.to_bezier(&decimals.digits, &start), block.line);
+                    let piece = block.to_bezier(&decimals.digits, &start);
+                    self.polygon(piece.control_points());
+                    self.bezier(&piece, block.line);
                     start = block.end;
                 }
             }
             Written::Nurbs(nurbs) => {
                 // A reader lets no unsound spline through.
                 if let Ok(spline) = to_nurbs(decimals, nurbs) {
+                    self.polygon(spline.points());
                     for (i, (piece, _)) in spline.beziers().enumerate() {
                         // Span i ends with the block of control point i + 1; the last spans close with the last block.
                         let line = nurbs.lines.get(i + 1).or(nurbs.lines.last()).copied().unwrap_or(0);

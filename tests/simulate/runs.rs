@@ -29,7 +29,7 @@ const LIMITED: &str = "extends = \"sinumerik\"\n\
 /// Runs a program for a machine.
 fn run(text: &str, machine: &Machine, feed: Option<f64>) -> (Vec<Row>, Summary) {
     let reading = (machine.dialect.read)(text, SourceId::INPUT, machine).unwrap_or_else(|e| panic!("{e:?}"));
-    let setting = Setting { machine: Some(machine), feed, tolerance: 0.001 };
+    let setting = Setting { machine: Some(machine), feed, tolerance: 0.001, ..Setting::default() };
     let track = Track::of_decimals(&reading.value.decimals, &setting).unwrap_or_else(|e| panic!("{e:?}"));
     let limits = Limits::of(machine, &track.axes, CYCLE);
     let options = Options { law: LAW, limits, block_time: machine.block_time, tolerance: 0.001 };
