@@ -13,10 +13,12 @@
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
 use crate::geom::bezier::Bezier;
+use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::LogCurve;
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
+use std::sync::Arc;
 
 /// A program: a name, its coordinates, its steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,6 +131,19 @@ pub enum Curve {
     Through(ThroughKind, Polyline),
     /// The path of a conical cutter's flute.
     Logarithmic(Logarithmic),
+    /// Coordinates as expressions in a parameter.
+    Formula(Described),
+}
+
+/// A curve by expressions, and the pieces that stand for it wherever pieces are needed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Described {
+    /// The expressions.
+    pub formula: Arc<Formula>,
+    /// Quintic pieces.
+    pub pieces: Vec<Bezier>,
+    /// How far they are from it at most, mm or degrees, each axis.
+    pub bound: Position,
 }
 
 impl Curve {
@@ -139,7 +154,7 @@ impl Curve {
                 let mut from = line.start;
                 line.points().map(|to| Bezier::line(std::mem::replace(&mut from, to), to)).collect()
             }
-            Curve::Polynomial(pieces) => pieces.clone(),
+            Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => pieces.clone(),
             Curve::Nurbs(nurbs) => nurbs.beziers().map(|(piece, _)| piece).collect(),
             Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
         }

@@ -320,6 +320,14 @@ impl<'p> Cursor<'p> {
         match (curve, &cut.curve) {
             (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written),
             (Curve::Logarithmic(log), written) => self.logarithmic(log, written, tolerance, ideal),
+            (Curve::Formula(described), written) => {
+                let (machine, radius) = (self.machine, self.radius);
+                let mut found = self.curve(&curve::Asked { curve, machine, radius, tolerance }, written)?;
+                let more = self.stand_in(&described.bound);
+                found.deviation.mm += more.mm;
+                found.deviation.rad += more.rad;
+                Ok(found)
+            }
             (Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..), written) => {
                 let (machine, radius) = (self.machine, self.radius);
                 self.curve(&curve::Asked { curve, machine, radius, tolerance }, written)

@@ -117,12 +117,18 @@ pub struct Failing {
 pub struct Expression {
     /// Each after its arguments; the last is the whole. Never empty.
     ops: Vec<(Op, Range<usize>)>,
+    text: String,
 }
 
 impl Expression {
     /// The number itself.
     pub fn number(x: f64) -> Expression {
-        Expression { ops: vec![(Op::Number(x), 0..0)] }
+        Expression { ops: vec![(Op::Number(x), 0..0)], text: x.to_string() }
+    }
+
+    /// As it was written.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// Whether the parameter stands in it.

@@ -6,7 +6,7 @@
 use super::{convert, interpolate, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Form, Motion};
-use crate::ir::{Curve, Cut, Intent, Method, Program, Role, Step};
+use crate::ir::{Curve, Cut, Described, Intent, Method, Program, Role, Step};
 use crate::machine::Machine;
 use crate::units::Axis;
 
@@ -24,7 +24,7 @@ pub fn choose(
     let straight = paths(intent).all(|curve| match curve {
         Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
         Curve::Lines(_) => true,
-        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
+        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) | Curve::Formula(_) => false,
     });
     let mut best: Option<(usize, &'static Motion)> = None;
     let mut errors = Diagnostics::new();
@@ -79,7 +79,7 @@ pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
                 [true, c.y_slope() != 0.0, c.z_slope() != 0.0, c.k() != 0.0].get(i).copied().unwrap_or(false)
             }
             Curve::Lines(line) | Curve::Through(_, line) => line.points().any(|p| p[i] != line.start[i]),
-            Curve::Polynomial(pieces) => {
+            Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
                 pieces.iter().any(|piece| piece.control_points().iter().any(|p| p[i] != piece.points[0][i]))
             }
             Curve::Nurbs(nurbs) => nurbs.points().iter().any(|p| p[i] != nurbs.points()[0][i]),
@@ -117,7 +117,7 @@ pub fn count(program: &Program<f64, Curve>) -> usize {
                 Curve::Lines(line) | Curve::Through(_, line) => line.count(),
                 Curve::Polynomial(pieces) => pieces.len(),
                 Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
-                Curve::Logarithmic(_) => 0,
+                Curve::Logarithmic(_) | Curve::Formula(_) => 0,
             },
             Step::Cut(_) | Step::Comment(_) | Step::Tool(_) | Step::Spindle(_) | Step::Rapid(_) => 0,
         })

@@ -17,7 +17,9 @@ use super::shape::Shape;
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Curve, Cut, Decimals, Logarithmic, Method, Polyline, Program, Step, Written, WrittenPoints};
+use crate::ir::{
+    Curve, Cut, Decimals, Described, Logarithmic, Method, Polyline, Program, Step, Written, WrittenPoints,
+};
 use crate::machine::{Machine, RotaryFeed};
 use crate::pass::settle;
 use crate::source::{LineColumn, Sources, Span};
@@ -296,6 +298,13 @@ impl<'m> Builder<'m> {
             Curve::Nurbs(nurbs) => {
                 self.polygon(nurbs.points());
                 nurbs.beziers().for_each(|(piece, _)| self.bezier(&piece, 0));
+            }
+            Curve::Formula(Described { formula, pieces, .. }) => {
+                let start = formula.at(formula.range().0);
+                let points = || pieces.iter().flat_map(Bezier::control_points);
+                let reach =
+                    std::array::from_fn(|i| points().map(|p| (p[i] - start[i]).abs()).fold(0.0, f64::max));
+                self.piece(Shape::Formula(formula.clone()), &reach, None, 0);
             }
             Curve::Logarithmic(log) => self.logarithmic(log)?,
         }

@@ -238,3 +238,22 @@ fn what_cannot_be_run_is_told() {
     // Flutes alone are enough where a feed is said.
     out(&splinepost(&["simulate", &no_feed, "--feed", "6000"]));
 }
+
+#[test]
+fn a_job_of_expressions_is_run_as_it_is() {
+    let job = "fixtures/compile/lissajous/input.toml";
+    let output = splinepost(&["--message-format", "json", "simulate", job]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let summary: serde_json::Value =
+        serde_json::from_str(told.lines().last().expect("a line")).expect("JSON");
+    let worst = |name: &str| summary["simulation"][name]["value"].as_f64().expect("a number");
+    // The figures of the paper; the radius of curvature is 3.58 mm at least.
+    assert!(worst("feed_error") <= 1e-8 && worst("chord_error") <= 1e-6);
+    assert!(0.01 / (8.0 * 3.7) * 1e-3 < worst("chord_error"));
+    // Its last point is its start again, one turn of A later.
+    let text = out(&output);
+    let last: Vec<f64> =
+        text.lines().last().expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
+    assert_relative_eq!(last[3], 30.0, epsilon = 1e-12);
+    assert_relative_eq!(last[6], 360.0, epsilon = 1e-12);
+}

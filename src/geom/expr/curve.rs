@@ -6,8 +6,8 @@
 
 use super::interval::Interval;
 use super::jet::Jet;
-use super::number::Fault;
 use super::{Expression, Failing};
+use crate::geom::bezier::Bezier;
 use crate::units::{MAX_AXES, Position};
 
 /// The most parts that are looked at.
@@ -50,12 +50,19 @@ pub enum FormulaError {
 impl std::fmt::Display for FormulaError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            FormulaError::Fails { failing, u, .. } => write!(f, "{} at u = {u}", failing.fault),
-            FormulaError::Stands { u } => write!(f, "the curve stands still at u = {u}"),
+            FormulaError::Fails { failing, u, .. } => write!(f, "{} at u = {}", failing.fault, place(*u)),
+            FormulaError::Stands { u } => write!(f, "the curve stands still at u = {}", place(*u)),
             FormulaError::Range => f.write_str("the range of u must run from one number to another"),
             FormulaError::TooHard => f.write_str("the range of u is too wide to be looked through"),
         }
     }
+}
+
+/// A parameter in six decimals: it is known to a billionth of the range.
+fn place(u: f64) -> String {
+    let text = format!("{u:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 impl Formula {
@@ -75,6 +82,11 @@ impl Formula {
     /// Its first and its last parameter.
     pub fn range(&self) -> (f64, f64) {
         (self.from, self.to)
+    }
+
+    /// The expression of each coordinate.
+    pub fn axes(&self) -> &[Expression] {
+        &self.axes
     }
 
     /// How many coordinates it has.
@@ -147,21 +159,82 @@ impl Formula {
         self.axes.iter().enumerate().find_map(fault)
     }
 
-    /// An upper bound, for each axis, of how far the Hermite cubic through ends and end derivatives is from the curve on
-    /// this part: h⁴/384 · max|c⁗| = h⁴/16 · max|a₄|.
+    /// The same curve in other coordinates: axis i becomes `columns[i]`, the others of `rest` stay where it says.
+    #[must_use]
+    pub fn placed(&self, columns: &[usize], rest: &[f64]) -> Formula {
+        let mut axes: Vec<Expression> = rest.iter().map(|x| Expression::number(*x)).collect();
+        for (axis, to) in self.axes.iter().zip(columns) {
+            axes[*to] = axis.clone();
+        }
+        Formula { axes, ..*self }
+    }
+
+    /// Quintic pieces that share ends, first and second derivatives with the curve, and for each axis a bound of how far
+    /// they are from it, no more than `target` each before rounding. On a part of width h that is
+    ///
+    /// ```text
+    /// |c⁽⁶⁾|/6! · (u − u₀)³(u₁ − u)³ ≤ max|a₆| h⁶/64          and 64 ε max|c| for the roundings of the pieces
+    /// ```
+    ///
+    /// with the sixth Taylor coefficient a₆ bounded in intervals.
     ///
     /// # Errors
-    /// The part is too wide to be bounded.
-    pub fn cubic_error(&self, from: f64, to: f64) -> Result<Position, (usize, Fault)> {
-        let h = to - from;
-        let square = h * h;
-        let jets = self
-            .bounds::<5>(Interval::new(from.min(to), from.max(to)))
-            .map_err(|(axis, failing)| (axis, failing.fault))?;
-        let mut error = [0.0; MAX_AXES];
-        for (i, jet) in jets.iter().enumerate() {
-            error[i] = square * square / 16.0 * jet.0[4].magnitude();
+    /// There would be too many.
+    pub fn pieces(&self, target: f64) -> Result<(Vec<Bezier>, Position), FormulaError> {
+        let mut parts = vec![(self.from, self.to)];
+        let mut pieces = Vec::new();
+        let mut bound = [0.0f64; MAX_AXES];
+        let mut looked = 0;
+        while let Some((from, to)) = parts.pop() {
+            looked += 1;
+            if MOST_PARTS < looked {
+                return Err(FormulaError::TooHard);
+            }
+            let error = self.quintic_error(from, to);
+            let close = error.filter(|error| error.iter().all(|x| x[0] <= target));
+            let Some(error) = close else {
+                let middle = from.midpoint(to);
+                parts.push((middle, to));
+                parts.push((from, middle));
+                continue;
+            };
+            for axis in 0..MAX_AXES {
+                bound[axis] = bound[axis].max(error[axis][0] + error[axis][1]);
+            }
+            pieces.push(self.quintic(from, to));
         }
-        Ok(error)
+        // Neighbours share their joint to the bit.
+        for i in 1..pieces.len() {
+            pieces[i].points[0] = pieces[i - 1].end();
+        }
+        Ok((pieces, bound))
+    }
+
+    /// For each axis how far the quintic is from the curve, and the allowance for its roundings; none where the part is too
+    /// wide to be bounded.
+    fn quintic_error(&self, from: f64, to: f64) -> Option<[[f64; 2]; MAX_AXES]> {
+        let jets = self.bounds::<7>(Interval::new(from.min(to), from.max(to))).ok()?;
+        let half = 0.5 * (to - from);
+        let cube = half * half * half;
+        let mut error = [[0.0; 2]; MAX_AXES];
+        for (i, jet) in jets.iter().enumerate() {
+            error[i] = [cube * cube * jet.0[6].magnitude(), 64.0 * f64::EPSILON * jet.0[0].magnitude()];
+        }
+        Some(error)
+    }
+
+    /// P₁ = P₀ + hc′/5 and P₂ = P₀ + 2hc′/5 + h²c″/20, and the same from the end.
+    fn quintic(&self, from: f64, to: f64) -> Bezier {
+        let h = to - from;
+        let (start, end) = (self.jet::<3>(from), self.jet::<3>(to));
+        let side = |jet: &[Position; 3], h: f64| {
+            let one: Position = std::array::from_fn(|i| jet[0][i] + h * jet[1][i] / 5.0);
+            // The third coefficient is c″/2.
+            let two =
+                std::array::from_fn(|i| jet[0][i] + 2.0 * h * jet[1][i] / 5.0 + h * h * jet[2][i] / 10.0);
+            (one, two)
+        };
+        let ((one, two), (four, three)) = (side(&start, h), side(&end, -h));
+        Bezier::new(&[start[0], one, two, three, four, end[0]])
     }
 }

@@ -76,7 +76,7 @@ pub fn parse(text: &str, constants: &[(String, f64)]) -> Result<Expression, Pars
     if parser.at < text.len() {
         return Err(parser.expected("an operator: + - * / ^"));
     }
-    Ok(Expression { ops: parser.ops })
+    Ok(Expression { ops: parser.ops, text: text.to_owned() })
 }
 
 /// Whether a name can be a constant's: a letter, then letters, digits and `_`; not `u`, pi, e or a function.
@@ -195,7 +195,7 @@ impl<'t> Reader<'t> {
         let exponent = self.factor(depth + 1)?;
         let span = self.start(base)..self.at;
         // An exponent without u is a number, and its operations are not needed any more.
-        let own = Expression { ops: shifted(&self.ops[before..], before) };
+        let own = Expression { ops: shifted(&self.ops[before..], before), text: String::new() };
         if !own.depends()
             && let Ok(value) = own.at(0.0)
         {

@@ -178,12 +178,48 @@ fn a_curve_that_stands_still_is_none() {
     assert!(curve("cos(u) + u*sin(u)", "sin(u) - u*cos(u)", 3.0, 0.5).is_ok(), "it may fall");
 }
 
+/// The greatest distance in each axis of `n` equal pieces from their curve on 0 … `end`.
+fn off(formula: &Formula, pieces: &[crate::geom::bezier::Bezier], end: f64) -> [f64; 2] {
+    let mut worst = [0.0f64; 2];
+    let n = pieces.len();
+    for (i, piece) in pieces.iter().enumerate() {
+        for k in 0..=32 {
+            let t = f64::from(k) / 32.0;
+            let (own, asked) = (piece.eval(t), formula.at(end * (i as f64 + t) / n as f64));
+            for axis in 0..2 {
+                worst[axis] = worst[axis].max((own[axis] - asked[axis]).abs());
+            }
+        }
+    }
+    worst
+}
+
 #[test]
-fn the_cubic_bound_is_the_closed_form() {
-    // max|sin⁗| on 0.5 … 0.6 is sin 0.6: h⁴/384 · 0.5646.
-    let error = curve("sin(u)", "u", 0.0, 1.0).unwrap().cubic_error(0.5, 0.6).unwrap();
-    assert_relative_eq!(error[0], 1e-4 / 384.0 * 0.564_642_473_395_035_4, max_relative = 1e-12);
-    assert!(error[1] < 1e-20);
+fn quintics_are_within_their_bound_and_reach_it() {
+    // Of u⁶ the sixth coefficient is 1, so the bound is the error: (h/2)⁶ ≤ 1e-8 for h = 1/16.
+    let sixth = curve("u", "u^6", 0.0, 1.0).unwrap();
+    let (pieces, bound) = sixth.pieces(1e-8).unwrap();
+    assert_eq!(pieces.len(), 16);
+    let worst = off(&sixth, &pieces, 1.0);
+    assert_relative_eq!(worst[1], 1.0 / f64::from(1u32 << 30), max_relative = 1e-4);
+    assert!(
+        worst[0] <= bound[0] && worst[1] <= bound[1] && bound[1] < 1.001 * worst[1],
+        "{worst:?} {bound:?}"
+    );
+    // 30·2⁶/720 (h/2)⁶ ≤ 1e-7 for h = 0.1, whatever sin and cos are.
+    let lissajous = curve("30*cos(u)", "30*sin(2*u)", 0.0, 6.4).unwrap();
+    let (pieces, bound) = lissajous.pieces(1e-7).unwrap();
+    assert_eq!(pieces.len(), 64);
+    let worst = off(&lissajous, &pieces, 6.4);
+    assert!(worst[0] <= bound[0] && worst[1] <= bound[1], "{worst:?} {bound:?}");
+}
+
+#[test]
+fn a_curve_in_other_coordinates_is_the_same_curve() {
+    let formula = curve("30*cos(u)", "30*sin(2*u)", 0.0, 7.0).unwrap();
+    let placed = formula.placed(&[2, 0], &[1.0, -5.0, 0.0]);
+    let (own, asked) = (placed.at(0.3), formula.at(0.3));
+    assert_eq!((own[2], own[0], own[1]), (asked[0], asked[1], -5.0));
 }
 
 /// Random expressions of u in [0.2, 2], most of them defined there.
