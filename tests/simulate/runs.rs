@@ -257,3 +257,18 @@ fn a_job_of_expressions_is_run_as_it_is() {
     assert_relative_eq!(last[3], 30.0, epsilon = 1e-12);
     assert_relative_eq!(last[6], 360.0, epsilon = 1e-12);
 }
+
+#[test]
+fn points_of_expressions_are_told_with_their_bound() {
+    let job = "fixtures/compile/lissajous/input.toml";
+    let coarse = splinepost(&["interpolate", job, "--tolerance", "0.1", "--format", "csv"]);
+    let told = String::from_utf8_lossy(&coarse.stderr).into_owned();
+    assert!(out(&coarse).starts_with("n,curve,X,Y,Z,A_deg\n0,1,30.0,0.0,-2.0,0.0\n"));
+    assert!(told.contains("proved"), "{told}");
+    let json = out(&splinepost(&["interpolate", job, "--method", "direct", "--format", "json"]));
+    let points: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert!(points["deviation"].as_f64().expect("a number") <= 1e-3);
+    let refused = splinepost(&["interpolate", job, "--method", "odd-even"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("method-of-cutters-only"));
+}
