@@ -35,10 +35,10 @@ fn extent(figure: &Figure) -> [[f64; 2]; 2] {
     }
     extent.map(|[low, high]| {
         let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
-        // Nothing is drawn on the frame, and one value has room above and below.
-        let room = 0.04 * (high - low);
-        let least = 1e-9 * low.abs().max(high.abs()).max(1e-3);
-        let room = room.max(least);
+        // Nothing is drawn on the frame. What differs in the seventh figure only is level, and has room above and below.
+        let great = low.abs().max(high.abs());
+        let level = high - low <= 1e-6 * great;
+        let room = if level { 0.05 * great.max(1e-9) } else { 0.04 * (high - low) };
         [low - room, high + room]
     })
 }

@@ -5,7 +5,7 @@
 
 use super::{Figure, Style};
 use crate::diagnostic::Diagnostics;
-use crate::simulate::partition::{Parametric, Piece};
+use crate::simulate::partition::{Parametric, Piece, difference};
 use crate::simulate::report::Summary;
 use crate::simulate::shape::Shape;
 use crate::simulate::track::Track;
@@ -14,6 +14,9 @@ use crate::units::{Kind, MAX_AXES, Position};
 
 /// The most cycles that are drawn one by one.
 const MOST: u64 = 4_000;
+
+/// Cycles that turn by more than 30° turn a corner: √¾.
+const CORNER: f64 = 0.866_025_403_784_438_6;
 
 /// A line over the way, or its least and greatest column by column.
 struct Profile {
@@ -82,6 +85,7 @@ struct Collector<'t> {
     /// The last two positions of the run, the later first.
     last: [Option<Position>; 2],
     cycle: f64,
+    limited: bool,
 }
 
 impl Collector<'_> {
@@ -108,7 +112,12 @@ impl Collector<'_> {
         // The rest of a cycle is no whole one.
         if row.time == self.cycle || (row.time - self.cycle).abs() <= 1e-9 * self.cycle {
             if let [Some(one), Some(two)] = self.last {
-                for (i, profile) in self.accelerations.iter_mut().enumerate() {
+                // Without limits a corner is a step in speed at no acceleration; it would hide all the rest.
+                let (now, before) = (difference(&row.at, &one), difference(&one, &two));
+                let metric = &piece.counts;
+                let along = metric.dot(&now, &before);
+                let corner = !self.limited && along < CORNER * metric.norm(&now) * metric.norm(&before);
+                for (i, profile) in self.accelerations.iter_mut().enumerate().filter(|_| !corner) {
                     let change = (row.at[i] - one[i]) - (one[i] - two[i]);
                     profile.value(self.way, change / (self.cycle * self.cycle));
                 }
@@ -139,6 +148,7 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
         accelerations: (0..axes.count().min(MAX_AXES)).map(|_| new()).collect(),
         last: [None; 2],
         cycle: options.law.cycle,
+        limited: options.limits.any(),
     };
     let summary = simulate(track, options, &mut |row| collector.row(row))?;
     let way = "way in what F counts, mm";
