@@ -1,7 +1,7 @@
 //! Programs as text, to be looked at: one step a line, numbers in full precision.
 
 use crate::ir::{
-    Auxiliary, Curve, Cut, Decimals, Intent, Method, Polyline, Role, Shift, Step, Units, Written,
+    Auxiliary, Curve, Cut, Decimals, Described, Intent, Method, Polyline, Role, Shift, Step, Units, Written,
 };
 use crate::units::{Axes, Position};
 use std::fmt::{Display, Write as _};
@@ -46,6 +46,14 @@ pub fn intent(intent: &Intent) -> String {
                 for (point, weight) in nurbs.points().iter().zip(nurbs.weights()) {
                     let _ = writeln!(text, "    {} weight {weight}", position(&axes, point));
                 }
+            }
+            Curve::Formula(Described { formula, bound, .. }) => {
+                let (from, to) = formula.range();
+                let _ = writeln!(text, "formula, u from {from} to {to}");
+                for ((axis, _), expression) in axes.as_slice().iter().zip(formula.axes()) {
+                    let _ = writeln!(text, "    {axis} = {}", expression.text());
+                }
+                let _ = writeln!(text, "  pieces stand for it within {}", position(&axes, bound));
             }
             Curve::Logarithmic(log) => {
                 let method = match log.method {

@@ -14,6 +14,7 @@ use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
 use crate::geom::arc::{Arc, Plane, Sense};
 use crate::geom::bezier::Bezier;
+use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
@@ -202,7 +203,13 @@ impl Intent {
         self.program.steps.iter().filter_map(|located| match located.step.cut()? {
             Cut { feed, curve: Curve::Logarithmic(log), .. } => Some((log, *feed, located.span)),
             Cut {
-                curve: Curve::Lines(_) | Curve::Arc(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..),
+                curve:
+                    Curve::Lines(_)
+                    | Curve::Arc(_)
+                    | Curve::Polynomial(_)
+                    | Curve::Nurbs(_)
+                    | Curve::Formula(_)
+                    | Curve::Through(..),
                 ..
             } => None,
         })
@@ -224,6 +231,19 @@ pub enum Curve {
     Through(ThroughKind, Polyline),
     /// The path of a conical cutter's flute.
     Logarithmic(Logarithmic),
+    /// Coordinates as expressions in a parameter.
+    Formula(Described),
+}
+
+/// A curve by expressions, and the pieces that stand for it wherever pieces are needed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Described {
+    /// The expressions.
+    pub formula: std::sync::Arc<Formula>,
+    /// Quintic pieces.
+    pub pieces: Vec<Bezier>,
+    /// How far they are from it at most, mm or degrees, each axis.
+    pub bound: Position,
 }
 
 impl Curve {
@@ -235,7 +255,7 @@ impl Curve {
                 let mut from = line.start;
                 line.points().map(|to| Bezier::line(std::mem::replace(&mut from, to), to)).collect()
             }
-            Curve::Polynomial(pieces) => pieces.clone(),
+            Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => pieces.clone(),
             Curve::Nurbs(nurbs) => nurbs.beziers().map(|(piece, _)| piece).collect(),
             Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
         }

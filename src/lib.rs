@@ -30,6 +30,8 @@
 //! | [`verify`] | the proof |
 //! | [`map`] | which lines of the input each block came from |
 //! | [`points`] | the table of interpolated points |
+//! | [`simulate`] | the path as a control would run it |
+//! | [`plot`] | pictures |
 //! | [`setup`], [`summary`] | what a person at the machine must know, and what a compilation tells |
 
 pub mod decimal;
@@ -42,8 +44,10 @@ pub mod ir;
 pub mod machine;
 pub mod map;
 pub mod pass;
+pub mod plot;
 pub mod points;
 pub mod setup;
+pub mod simulate;
 pub mod source;
 pub mod summary;
 pub mod tables;

@@ -2,6 +2,9 @@
 //!
 //! Each row compares a point's A with the theoretical A at the same X, PA = a ln(1 + bX); ErPA = PA − A. In the paper's
 //! words, MaxErPAo is the greatest |ErPA| at odd points, MaxErPAe at even points.
+//! [`curves`] has the points of any other curve.
+
+pub mod curves;
 
 use crate::geom::logcurve::LogCurve;
 use crate::geom::oddeven::StepError;

@@ -179,7 +179,7 @@ fn amount(curve: &Curve, axes: &Axes) -> f64 {
             };
             line.points().map(way).sum()
         }
-        Curve::Polynomial(_) | Curve::Nurbs(_) => {
+        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Formula(_) => {
             curve.pieces().iter().map(|piece| linear_length(piece, axes)).sum()
         }
     }

@@ -438,6 +438,16 @@ impl<'p> Cursor<'p> {
             (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written).map(timed),
             (Curve::Arc(arc), written) => self.arc(arc, written).map(timed),
             (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),
+            (Curve::Formula(described), written) => {
+                let (machine, radius) = (self.machine, self.radius);
+                let feed = cut.feed;
+                let mut found =
+                    self.curve(&curve::Asked { curve, machine, radius, tolerance, feed }, written)?;
+                let more = self.stand_in(&described.bound);
+                found.deviation.mm += more.mm;
+                found.deviation.rad += more.rad;
+                Ok(Found { feed_error, ..found })
+            }
             (Curve::Lines(_) | Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..), written) => {
                 let (machine, radius) = (self.machine, self.radius);
                 let feed = cut.feed;

@@ -15,6 +15,8 @@
 //! | `fits` | few cubics, against the best there are |
 //! | `lines` | runs of lines as splines |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
+//! | `plot` | pages and sheets, and what they show |
+//! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
 //! | `cli` | exit codes, files, streams |
@@ -32,10 +34,12 @@ mod lines;
 mod machine;
 mod oracle;
 mod paper;
+mod plot;
 mod process;
 mod readme;
 mod robust;
 mod roundtrip;
 mod schema;
+mod simulate;
 mod support;
 mod tidy;

@@ -5,11 +5,12 @@ use super::{MethodName, machine, tolerance};
 use clap::ValueEnum;
 use splinepost::diagnostic::{Diagnostic, Diagnostics};
 use splinepost::front::cutter;
-use splinepost::ir::Method;
+use splinepost::ir::{Intent, Method};
 use splinepost::points::Table;
+use splinepost::points::curves::Points;
 use splinepost::source::{SourceId, Sources};
 
-/// Print the interpolated points of a cutter's flute beside the theoretical curve
+/// Print the interpolated points of a cutter's flute beside the theoretical curve, or those of a job's curves
 #[derive(clap::Args, Debug)]
 pub(crate) struct Interpolate {
     /// The input file, or - for standard input
@@ -43,16 +44,15 @@ impl Interpolate {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         *sources = Sources::new(io::read_source(&self.input)?);
-        let language = super::compile::language(None, sources)?;
-        if language.name != "cutter" {
-            let message =
-                format!("a {} has no table of points: interpolate follows a cutter's flute", language.name);
-            return Err(Diagnostic::error("table-of-cutters-only", message).into());
-        }
         let default = match &self.to {
             Some(to) => machine(to, sources)?.tolerance,
             None => 0.001,
         };
+        let language = super::compile::language(None, sources)?;
+        if language.name != "cutter" {
+            let intent = (language.understand)(sources)?;
+            return self.curves(console, sources, &intent, default);
+        }
         let job = match sources.get(SourceId::INPUT) {
             Some(input) => cutter::parse(input, SourceId::INPUT)?,
             None => return Err(Diagnostics::new()),
@@ -72,6 +72,34 @@ impl Interpolate {
             Format::Json => table.to_json(),
         })?;
         console.remark(&table.summary());
+        Ok(())
+    }
+
+    /// Points of any other curve.
+    fn curves(
+        &self,
+        console: &Console,
+        sources: &Sources,
+        intent: &Intent,
+        default: f64,
+    ) -> Result<(), Diagnostics> {
+        if let Some(MethodName::OddEven) = self.method {
+            let message = "odd-even steps are those of a cutter's logarithmic curve";
+            return Err(Diagnostic::error("method-of-cutters-only", message)
+                .hint("--method direct gives as few points as hold the tolerance")
+                .into());
+        }
+        let tolerance = self.tolerance.or(intent.tolerance.map(|(mm, _)| mm)).unwrap_or(default);
+        let points = Points::new(intent, tolerance).map_err(|error| {
+            Diagnostic::refusal("tolerance-out-of-reach", error.to_string()).hint("allow a larger tolerance")
+        })?;
+        io::print(&match self.format {
+            Format::Text => points.to_text(),
+            Format::Csv => points.to_csv(),
+            Format::Json => points.to_json(),
+        })?;
+        console.diagnostics(&intent.warnings, sources);
+        console.remark(&points.summary());
         Ok(())
     }
 }

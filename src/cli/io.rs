@@ -40,6 +40,14 @@ impl Console {
         Console::to_stderr(&text);
     }
 
+    /// Tells figures on standard error: text for people, or a line of JSON.
+    pub(crate) fn figures(&self, text: &str, json: &str) {
+        Console::to_stderr(match self.format {
+            MessageFormat::Text => text,
+            MessageFormat::Json => json,
+        });
+    }
+
     /// Tells a few lines of text on standard error, where messages are for people.
     pub(crate) fn remark(&self, text: &str) {
         if self.format == MessageFormat::Text {

@@ -8,7 +8,9 @@ mod interpolate;
 mod io;
 mod machines;
 mod man;
+mod plot;
 mod schema;
+mod simulate;
 mod subject;
 mod verify;
 
@@ -47,6 +49,8 @@ enum Command {
     Compile(compile::Compile),
     Interpolate(interpolate::Interpolate),
     Verify(verify::Verify),
+    Simulate(simulate::Simulate),
+    Plot(plot::Plot),
     Check(check::Check),
     Dump(dump::Dump),
     Machines(machines::Machines),
@@ -84,6 +88,8 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Compile(command) => command.run(&console, &mut sources),
         Command::Interpolate(command) => command.run(&console, &mut sources),
         Command::Verify(command) => command.run(&console, &mut sources),
+        Command::Simulate(command) => command.run(&console, &mut sources),
+        Command::Plot(command) => command.run(&console, &mut sources),
         Command::Check(command) => command.run(&console, &mut sources),
         Command::Dump(command) => command.run(&console, &mut sources),
         Command::Machines(command) => command.run(&console),

@@ -45,6 +45,16 @@ impl Subject {
         (language.understand)(sources).map(|intent| Understood::Input(language, Box::new(intent)))
     }
 
+    /// Whether it is this file, or its machine's.
+    pub(super) fn is(&self, path: &str) -> bool {
+        io::same_file(path, &self.input) || self.to.as_ref().is_some_and(|to| io::same_file(path, to))
+    }
+
+    /// The machine that --to names.
+    pub(super) fn machine(&self, sources: &mut Sources) -> Result<Option<Machine>, Diagnostics> {
+        self.to.as_deref().map(|to| machine(to, sources)).transpose()
+    }
+
     /// The machine of an NC program: that is what the file is where `--from nc` says so, or where a machine is named and
     /// the text is in no language of inputs.
     fn machine_of_program(&self, sources: &Sources) -> Result<Option<&str>, Diagnostics> {

@@ -44,7 +44,10 @@ pub struct Assembler<'m> {
     steps: Vec<Located<Decimal, Written>>,
     run: Option<(WrittenPoints, Span)>,
     run_feed: Option<Decimal>,
-    warned_start: bool,
+    /// Which axes the cuts so far name.
+    named: [bool; MAX_AXES],
+    /// The first cut from a position that was not known in these axes.
+    unknown: Option<([bool; MAX_AXES], Span)>,
 }
 
 impl<'m> Assembler<'m> {
@@ -77,7 +80,8 @@ impl<'m> Assembler<'m> {
             steps: Vec::new(),
             run: None,
             run_feed: None,
-            warned_start: false,
+            named: [false; MAX_AXES],
+            unknown: None,
         }
     }
 
@@ -173,34 +177,26 @@ impl<'m> Assembler<'m> {
         self.step(Step::Home(axis), span);
     }
 
-    /// The position where all axes are known; unknown ones from `fallback`, with a warning.
+    /// The position where all axes are known; unknown ones from `fallback`. There is a warning in the end where a cut names
+    /// such an axis: others stand wherever they are.
     pub fn start(&mut self, fallback: &Units, span: Span) -> Units {
-        let mut start = [0; MAX_AXES];
-        for (i, start) in start.iter_mut().enumerate().take(self.machine.axes.count()) {
-            if self.position[i].is_none() && !self.warned_start {
-                self.warned_start = true;
-                self.diagnostics.push(
-                    Diagnostic::warning(
-                        "start-unknown",
-                        "the first cut starts at a position that the text does not say",
-                    )
-                    .at(span, "starts from an unknown position"),
-                );
-            }
-            *start = self.position[i].unwrap_or(fallback[i]);
+        let count = self.machine.axes.count();
+        if self.unknown.is_none() && self.position[..count].contains(&None) {
+            self.unknown = Some((self.position.map(|place| place.is_none()), span));
         }
-        start
+        std::array::from_fn(|i| if i < count { self.position[i].unwrap_or(fallback[i]) } else { 0 })
     }
 
     /// The end of a move that names some axes.
     #[inline]
-    pub fn target(&self, named: &[(usize, i64)]) -> Units {
+    pub fn target(&mut self, named: &[(usize, i64)]) -> Units {
         let mut target = [0; MAX_AXES];
         for (i, position) in self.position.iter().enumerate() {
             target[i] = position.unwrap_or(0);
         }
         for (axis, units) in named {
             target[*axis] = *units;
+            self.named[*axis] = true;
         }
         target
     }
@@ -297,6 +293,17 @@ impl<'m> Assembler<'m> {
     /// The diagnostics hold one.
     pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
         self.flush();
+        if let Some((unknown, span)) = self.unknown
+            && (0..MAX_AXES).any(|i| unknown[i] && self.named[i])
+        {
+            self.diagnostics.push(
+                Diagnostic::warning(
+                    "start-unknown",
+                    "the first cut starts at a position that the text does not say",
+                )
+                .at(span, "starts from an unknown position"),
+            );
+        }
         let warnings = self.diagnostics.into_result()?;
         let mut steps = self.steps;
         // Remarks before the first step say what to set up; others are sections.

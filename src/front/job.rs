@@ -26,11 +26,13 @@
 //! | `bezier` | `points`, `degree`, `weights` | Bezier curves of one degree in a row, each starting where the last ended |
 //! | `polynomial` | `coefficients`, `range` | X(u) = x₀ + x₁u + x₂u² … for each axis |
 //! | `points` | `points` | straight lines from point to point |
+//! | `expression` | `X` … `C`, `u`, `constants` | X(u), Y(u) … as expressions; angles in radians, rotary axes in degrees |
 //!
 //! Curves are run in their order. Where one starts within [`MEET`] of where the one before ended they are joined;
 //! elsewhere the tool retracts between them.
 
 mod curves;
+mod expression;
 mod file;
 mod program;
 

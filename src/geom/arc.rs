@@ -242,6 +242,18 @@ impl Arc {
         place
     }
 
+    /// The place and its first two derivatives by t at 0 ≤ t ≤ 1.
+    pub fn jet(&self, t: f64) -> [Position; 3] {
+        let [u, v, _] = self.plane.axes();
+        let mut rate: Position = std::array::from_fn(|i| self.end[i] - self.start[i]);
+        let mut second = [0.0; MAX_AXES];
+        let angle = self.angle + t * self.sweep;
+        let (across, up) = (self.radius * elementary::cos(angle), self.radius * elementary::sin(angle));
+        (rate[u], rate[v]) = (-self.sweep * up, self.sweep * across);
+        (second[u], second[v]) = (-self.sweep * self.sweep * across, -self.sweep * self.sweep * up);
+        [self.eval(t), rate, second]
+    }
+
     /// The direction in u and v at 0 ≤ t ≤ 1, of length 1.
     pub fn tangent(&self, t: f64) -> [f64; 2] {
         let angle = self.angle + t * self.sweep;

@@ -43,3 +43,48 @@ pub fn ln_1p_over(x: f64) -> f64 {
     // Below 2⁻⁵⁴ the series 1 − x/2 + … is 1 to the last bit.
     if x.abs() < 5.0e-17 { 1.0 } else { ln_1p(x) / x }
 }
+
+/// arcsin x, in radians.
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+
+/// arccos x, in radians.
+pub fn acos(x: f64) -> f64 {
+    libm::acos(x)
+}
+
+/// The angle of (x, y), in radians.
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
+/// eˣ.
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+/// ln x.
+pub fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+
+/// sinh x.
+pub fn sinh(x: f64) -> f64 {
+    libm::sinh(x)
+}
+
+/// cosh x.
+pub fn cosh(x: f64) -> f64 {
+    libm::cosh(x)
+}
+
+/// tanh x.
+pub fn tanh(x: f64) -> f64 {
+    libm::tanh(x)
+}
+
+/// xʸ.
+pub fn pow(x: f64, y: f64) -> f64 {
+    libm::pow(x, y)
+}

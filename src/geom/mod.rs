@@ -11,6 +11,7 @@
 //! | [`arc`] | arcs and helices, and how far a control may be from one |
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
+//! | [`expr`] | expressions in one parameter, their derivatives and bounds |
 //! | [`nurbs`] | knots, insertion, pieces to spline and back |
 //! | [`knots`] | clamping, degree elevation, by the blossom |
 //! | [`fit`] | few pieces within a tolerance |
@@ -26,6 +27,7 @@ pub mod bezier;
 pub mod chain;
 pub mod deviation;
 pub mod elementary;
+pub mod expr;
 pub mod fit;
 pub mod follow;
 pub mod geometric;

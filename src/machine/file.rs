@@ -118,6 +118,12 @@ impl Reader {
         }
         let text = self.text(file.text.unwrap_or_default(), base.map(|b| &b.text))?;
         let feed = file.feed.unwrap_or_default();
+        let block_time = feed.block_time.as_ref().map(|time| *time.get_ref());
+        if let Some(time) =
+            feed.block_time.filter(|time| !(0.0 < *time.get_ref() && time.get_ref().is_finite()))
+        {
+            self.error("block-time", "block_time is a number of milliseconds greater than zero", time.span());
+        }
         let rotary_feed = match feed.rotary {
             None => self.or(None, base.map(|b| b.rotary_feed), "feed.rotary")?,
             Some(word) => match word.get_ref().as_str() {
@@ -167,6 +173,7 @@ impl Reader {
             rotary_feed,
             feed_error,
             feed_parameter,
+            block_time: block_time.or(base.and_then(|b| b.block_time)),
             parameters,
             spline,
             frame,

@@ -23,6 +23,7 @@ pub const KEYS: &[Key] = &[
             Key::value("max"),
             Key::value("max_speed"),
             Key::value("max_acceleration"),
+            Key::value("max_step"),
             Key::value("home"),
             Key::value("digits"),
             Key::value("sign"),
@@ -54,7 +55,10 @@ pub const KEYS: &[Key] = &[
             Key::value("extension"),
         ],
     ),
-    Key::table("feed", &[Key::value("rotary"), Key::value("error"), Key::value("parameter")]),
+    Key::table(
+        "feed",
+        &[Key::value("rotary"), Key::value("error"), Key::value("parameter"), Key::value("block_time")],
+    ),
     Key::table("parameter", &[Key::value("first"), Key::value("last")]),
     Key::table(
         "spline",
@@ -165,6 +169,9 @@ pub(super) struct AxisFile {
     /// Greatest acceleration at feed, mm/s² or degrees/s².
     #[schemars(with = "Option<f64>")]
     pub(super) max_acceleration: Option<Spanned<f64>>,
+    /// Greatest step in speed at the joint of two blocks, mm/min or degrees/min.
+    #[schemars(with = "Option<f64>")]
+    pub(super) max_step: Option<Spanned<f64>>,
     /// Where it is clear in machine coordinates, mm: before the tool change and at the end. Without it no program goes there.
     #[schemars(with = "Option<f64>")]
     pub(super) home: Option<Spanned<f64>>,
@@ -240,6 +247,9 @@ pub(super) struct FeedFile {
     pub(super) error: Option<Spanned<f64>>,
     /// Whether feeds are parameters, set at the head of the program.
     pub(super) parameter: Option<bool>,
+    /// How long the control takes to make a block ready, ms.
+    #[schemars(with = "Option<f64>")]
+    pub(super) block_time: Option<Spanned<f64>>,
 }
 
 /// Which parameters a program may use: R of Sinumerik, Q of Heidenhain, # of Mazak.

@@ -36,6 +36,8 @@ pub struct Machine {
     pub feed_error: f64,
     /// Whether feeds are parameters.
     pub feed_parameter: bool,
+    /// How long the control takes to make a block ready, ms.
+    pub block_time: Option<f64>,
     /// Which parameters a program may use.
     pub parameters: Parameters,
     /// What its splines take.
@@ -70,6 +72,8 @@ pub struct AxisLimits {
     pub max_speed: Option<f64>,
     /// The greatest acceleration at feed, mm/s² or degrees/s².
     pub max_acceleration: Option<f64>,
+    /// The greatest step in speed at the joint of two blocks, mm/min or degrees/min.
+    pub max_step: Option<f64>,
     /// Where it is clear in machine coordinates, mm.
     pub home: Option<f64>,
     /// Its decimals, where they are not those of its kind.

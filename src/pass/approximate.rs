@@ -57,6 +57,9 @@ pub fn exact(curve: &Curve, form: Form, frame: &Frame<'_>) -> Result<(), String>
     if straight {
         return Ok(());
     }
+    if matches!(curve, Curve::Formula(_)) {
+        return Err("it is made of expressions".to_owned());
+    }
     let pieces = curve.pieces();
     let degree = pieces.iter().map(|piece| piece.degree).max().unwrap_or(0);
     let rational = pieces.iter().any(|piece| !piece.is_polynomial());
@@ -82,6 +85,7 @@ pub fn exact(curve: &Curve, form: Form, frame: &Frame<'_>) -> Result<(), String>
         Form::Nurbs => match curve {
             Curve::Nurbs(nurbs) => spline::adapted(nurbs.clone(), frame.machine).map(|_| ()),
             Curve::Polynomial(_)
+            | Curve::Formula(_)
             | Curve::Lines(_)
             | Curve::Arc(_)
             | Curve::Through(..)

@@ -6,7 +6,7 @@
 use super::{convert, interpolate, place, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Form, Motion};
-use crate::ir::{Curve, Cut, Intent, Method, Program, Role};
+use crate::ir::{Curve, Cut, Described, Intent, Method, Program, Role};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::Axis;
 
@@ -32,7 +32,7 @@ pub fn choose(
     let straight = paths(source).all(|curve| match curve {
         Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
         Curve::Lines(_) | Curve::Arc(_) => true,
-        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) => false,
+        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) | Curve::Formula(_) => false,
     });
     let winds = place::winds(intent, machine);
     let turns = intent.logarithmic().any(|(log, ..)| log.curve.k() != 0.0);
@@ -105,7 +105,7 @@ pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
                 let (low, high) = arc.range();
                 low[i] != high[i]
             }
-            Curve::Polynomial(pieces) => {
+            Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
                 pieces.iter().any(|piece| piece.control_points().iter().any(|p| p[i] != piece.points[0][i]))
             }
             Curve::Nurbs(nurbs) => nurbs.points().iter().any(|p| p[i] != nurbs.points()[0][i]),
@@ -143,7 +143,7 @@ pub fn count(program: &Program<f64, Curve>) -> usize {
             Curve::Polynomial(pieces) => pieces.len(),
             Curve::Arc(_) => 1,
             Curve::Nurbs(nurbs) => nurbs.points().len() - 1,
-            Curve::Logarithmic(_) => 0,
+            Curve::Logarithmic(_) | Curve::Formula(_) => 0,
         })
         .sum()
 }

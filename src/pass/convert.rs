@@ -69,8 +69,13 @@ fn to_form(curve: Curve, form: Form, axes: &Axes, machine: &Machine) -> Result<C
         }
         (Curve::Nurbs(nurbs), Form::Nurbs) => spline::adapted(nurbs, machine).map(Curve::Nurbs),
         (curve @ Curve::Nurbs(_), Form::Polynomial { .. }) => Ok(Curve::Polynomial(curve.pieces())),
-        (Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Through(..) | Curve::Logarithmic(_), _) => {
-            Err("this curve has no exact form as the motion that was asked for".to_owned())
-        }
+        (
+            Curve::Polynomial(_)
+            | Curve::Nurbs(_)
+            | Curve::Through(..)
+            | Curve::Logarithmic(_)
+            | Curve::Formula(_),
+            _,
+        ) => Err("this curve has no exact form as the motion that was asked for".to_owned()),
     }
 }

@@ -115,7 +115,7 @@ fn reversed(curve: Curve) -> Curve {
         Curve::Through(kind, line) => Curve::Through(kind, line.reversed()),
         Curve::Polynomial(pieces) => Curve::Polynomial(pieces.iter().rev().map(Bezier::reversed).collect()),
         // `interpolate` makes none of these.
-        Curve::Arc(_) | Curve::Nurbs(_) | Curve::Logarithmic(_) => curve,
+        Curve::Arc(_) | Curve::Nurbs(_) | Curve::Formula(_) | Curve::Logarithmic(_) => curve,
     }
 }
 

@@ -205,7 +205,7 @@ impl Quantiser<'_> {
             Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
             Curve::Polynomial(pieces) => self.polynomial(&pieces, role == Role::Path && self.closing),
             Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
-            Curve::Logarithmic(_) => Err(Unwritable), // `interpolate` left none
+            Curve::Logarithmic(_) | Curve::Formula(_) => Err(Unwritable), // `interpolate` left none
         }
     }
 

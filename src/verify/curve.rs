@@ -93,7 +93,7 @@ impl Cursor<'_> {
                 to_nurbs(self.decimals, nurbs).ok().and_then(|path| cut_like(curve, &path)).unwrap_or(pieces)
             }
             (Curve::Nurbs(_) | Curve::Lines(_) | Curve::Arc(_) | Curve::Polynomial(_), _)
-            | (Curve::Through(..) | Curve::Logarithmic(_), _) => pieces,
+            | (Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_), _) => pieces,
         };
         let scaled = |pieces: &[Bezier]| pieces.iter().map(|piece| metric.scaled(piece)).collect::<Vec<_>>();
         let followed = follow(&scaled(&path), &scaled(&pieces), asked.tolerance)
@@ -119,6 +119,13 @@ impl Cursor<'_> {
             Written::Nurbs(_) | Written::Arc(_) | Written::Through(..) => self.advance(),
         }
         Ok(found)
+    }
+
+    /// How far pieces are from the expressions that they stand for, given the bound in each axis.
+    pub(super) fn stand_in(&self, bound: &Position) -> Bound {
+        let axes = self.decimals.program.axes;
+        let kinds: Vec<Kind> = axes.as_slice().iter().map(|(_, kind)| *kind).collect();
+        Metric::new(&kinds, self.radius).distance(&[0.0; MAX_AXES], bound)
     }
 
     /// The length of the linear axes' path, mm, by Simpson's rule on sixteen parts of each piece.

@@ -58,6 +58,7 @@ fn a_sweep_of_several_turns_is_several_turns() {
             Curve::Lines(_)
             | Curve::Polynomial(_)
             | Curve::Nurbs(_)
+            | Curve::Formula(_)
             | Curve::Through(..)
             | Curve::Logarithmic(_) => None,
         })

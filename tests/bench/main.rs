@@ -3,10 +3,14 @@
 //! The machine is shared and noisy: compare ratios.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
 use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
 use splinepost::geom::oddeven::OddEven;
 use splinepost::machine::Machine;
+use splinepost::simulate::partition;
+use splinepost::simulate::partition::{Cycles, Method, Piece, Weights};
+use splinepost::simulate::shape::{Shape, Way};
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::{Options, compile, front};
 use std::hint::black_box;
@@ -132,6 +136,32 @@ fn points_of_cl_data(c: &mut Criterion) {
     group.finish();
 }
 
+/// Control cycles a second at 6 m/min and 1 ms, to a feed error of 1e-8: aim two million.
+fn cycles(c: &mut Criterion) {
+    let at = |x: f64, y: f64| [x, y, 0.1 * x, 2.0 * y, 0.0, 0.0];
+    let cubic = Bezier::new(&[at(0.0, 0.0), at(40.0, 90.0), at(110.0, -70.0), at(150.0, 20.0)]);
+    let long = curve(Cutter { length: 200.0, ..PAPER });
+    let shapes =
+        [("cubic", Shape::bezier(&cubic)), ("logarithmic", Shape::Logarithmic(Box::new(long), Way::Forth))];
+    let mut group = c.benchmark_group("cycles");
+    for (name, shape) in shapes {
+        let (from, to) = shape.range();
+        let counts = Weights([1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+        let pieces = [Piece { curve: shape, from, to, feed: 100.0, counts, surface: counts }];
+        for (word, method) in
+            [("secant", Method::Secant), ("bisection", Method::Bisection), ("taylor", Method::Taylor)]
+        {
+            let law = partition::Law { method, cycle: 1e-3, tolerance: 1e-8 };
+            let run = || Cycles::new(black_box(&pieces), law);
+            group.throughput(Throughput::Elements(run().count() as u64));
+            group.bench_function(format!("{name}/{word}"), |b| {
+                b.iter(|| run().fold(0.0, |sum, cycle| sum + cycle.feed_error + cycle.chord_error));
+            });
+        }
+    }
+    group.finish();
+}
+
 /// Runs of points as splines: from ten thousand points to a million, in points a second, which should stay level.
 fn fit(c: &mut Criterion) {
     let mut group = c.benchmark_group("fit");
@@ -152,5 +182,5 @@ fn fit(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, odd_even, direct, whole, million, points_of_cl_data, fit);
+criterion_group!(benches, odd_even, direct, whole, million, points_of_cl_data, fit, cycles);
 criterion_main!(benches);

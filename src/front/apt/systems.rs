@@ -34,11 +34,6 @@ impl Head {
             start.bytes().all(|b| bytes.next() == Some(b))
         })
     }
-
-    /// Whether it has this anywhere.
-    pub(super) fn has(&self, text: &str) -> bool {
-        self.0.contains(text)
-    }
 }
 
 /// All systems; the first that recognises a text reads it, the last recognises none.

@@ -5,15 +5,16 @@ use super::{GREATEST, Placed, Reader};
 use crate::diagnostic::Diagnostic;
 use crate::geom::bezier::{Bezier, MAX_PIECE_DEGREE};
 use crate::geom::nurbs::{Nurbs, NurbsError};
-use crate::ir::{Curve, Polyline};
+use crate::ir::{Curve, Described, Polyline};
 use crate::source::Span;
 use crate::tables::nearest;
 use crate::units::{Axes, Axis, MAX_AXES, Position};
 use std::ops::Range;
+use std::sync::Arc;
 use toml::Spanned;
 
 /// The words of `kind`.
-const KINDS: [&str; 4] = ["nurbs", "bezier", "polynomial", "points"];
+const KINDS: [&str; 5] = ["nurbs", "bezier", "polynomial", "points", "expression"];
 
 /// The most points of one curve.
 const MAX_POINTS: usize = 10_000_000;
@@ -73,6 +74,23 @@ impl Shape {
                 let (start, end) = (placed.points()[0], placed.points()[placed.points().len() - 1]);
                 (Curve::Nurbs(placed), start, end)
             }
+            Curve::Formula(own) => {
+                let mut described = own;
+                for piece in &mut described.pieces {
+                    for point in &mut piece.points {
+                        *point = place(point);
+                    }
+                }
+                let mut bound = [0.0; MAX_AXES];
+                for (from, to) in columns.iter().enumerate() {
+                    bound[*to] = described.bound[from];
+                }
+                described.bound = bound;
+                described.formula = Arc::new(described.formula.placed(&columns, &rest[..axes.count()]));
+                let pieces = &described.pieces;
+                let (start, end) = (pieces[0].start(), pieces[pieces.len() - 1].end());
+                (Curve::Formula(described), start, end)
+            }
             // No kind of curve makes these.
             curve @ (Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
         };
@@ -106,13 +124,18 @@ impl Reader {
             return None;
         }
         self.needless(&table, word);
-        let axes = self.own_axes(&table, head.clone())?;
+        let own = if word == "expression" { Some(self.expression(&table, head.clone())?) } else { None };
+        let axes = match &own {
+            Some((axes, _)) => axes.clone(),
+            None => self.own_axes(&table, head.clone())?,
+        };
         let at = self.at(&table, &axes);
-        let curve = match word {
-            "nurbs" => self.nurbs(&table, axes.len(), head.clone()),
-            "bezier" => self.bezier(&table, axes.len(), head.clone()),
-            "polynomial" => self.polynomial(&table, axes.len(), head.clone()),
-            _ => self.run(&table, axes.len(), head.clone()),
+        let curve = match (own, word) {
+            (Some((_, curve)), _) => Some(curve),
+            (None, "nurbs") => self.nurbs(&table, axes.len(), head.clone()),
+            (None, "bezier") => self.bezier(&table, axes.len(), head.clone()),
+            (None, "polynomial") => self.polynomial(&table, axes.len(), head.clone()),
+            (None, _) => self.run(&table, axes.len(), head.clone()),
         }?;
         if stands_still(&curve) {
             self.error("curve-empty", "this curve has no length", head);
@@ -125,12 +148,17 @@ impl Reader {
     /// Keys that this kind of curve has no use for.
     fn needless(&mut self, table: &CurveTable, kind: &str) {
         let used: &[&str] = match kind {
-            "nurbs" => &["degree", "knots", "points", "weights"],
-            "bezier" => &["degree", "points", "weights"],
-            "polynomial" => &["coefficients", "range"],
-            _ => &["points"],
+            "nurbs" => &["axes", "degree", "knots", "points", "weights"],
+            "bezier" => &["axes", "degree", "points", "weights"],
+            "polynomial" => &["axes", "coefficients", "range"],
+            "expression" => &["u", "constants", "X", "Y", "Z", "U", "V", "W", "A", "B", "C"],
+            _ => &["axes", "points"],
         };
+        let expressions = table.expressions().map(|(name, text)| (name, text.as_ref().map(Spanned::span)));
         let present = [
+            ("axes", table.axes.as_ref().map(Spanned::span)),
+            ("u", table.u.as_ref().map(Spanned::span)),
+            ("constants", table.constants.as_ref().map(Spanned::span)),
             ("degree", table.degree.as_ref().map(Spanned::span)),
             ("knots", table.knots.as_ref().map(Spanned::span)),
             ("points", table.points.as_ref().map(Spanned::span)),
@@ -138,7 +166,7 @@ impl Reader {
             ("coefficients", table.coefficients.as_ref().map(Spanned::span)),
             ("range", table.range.as_ref().map(Spanned::span)),
         ];
-        for (key, span) in present {
+        for (key, span) in present.into_iter().chain(expressions) {
             if let Some(range) = span
                 && !used.contains(&key)
             {
@@ -417,7 +445,7 @@ impl Reader {
 fn stands_still(curve: &Curve) -> bool {
     match curve {
         Curve::Lines(line) | Curve::Through(_, line) => line.points().all(|point| point == line.start),
-        Curve::Polynomial(pieces) => {
+        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
             pieces.iter().flat_map(Bezier::control_points).all(|point| *point == pieces[0].start())
         }
         Curve::Nurbs(nurbs) => nurbs.points().iter().all(|point| *point == nurbs.points()[0]),

@@ -24,6 +24,17 @@ pub const KEYS: &[Key] = &[
             Key::value("weights"),
             Key::value("coefficients"),
             Key::value("range"),
+            Key::value("u"),
+            Key::value("constants"),
+            Key::value("X"),
+            Key::value("Y"),
+            Key::value("Z"),
+            Key::value("U"),
+            Key::value("V"),
+            Key::value("W"),
+            Key::value("A"),
+            Key::value("B"),
+            Key::value("C"),
         ],
     ),
     Key::table(
@@ -67,7 +78,7 @@ pub(super) struct File {
 #[serde(deny_unknown_fields)]
 pub(super) struct CurveTable {
     /// What the numbers mean.
-    #[schemars(with = "Option<String>", extend("enum" = ["nurbs", "bezier", "polynomial", "points"]))]
+    #[schemars(with = "Option<String>", extend("enum" = ["nurbs", "bezier", "polynomial", "points", "expression"]))]
     pub(super) kind: Option<Spanned<String>>,
     /// The coordinates of a point, in order: X Y Z U V W in mm, A B C in degrees.
     #[schemars(with = "Option<Vec<String>>")]
@@ -93,6 +104,75 @@ pub(super) struct CurveTable {
     /// From where to where u runs. Default [0, 1].
     #[schemars(with = "Option<Vec<f64>>")]
     pub(super) range: Option<Spanned<Vec<Spanned<f64>>>>,
+    /// From where to where u of an expression runs: numbers, or expressions of constants.
+    #[schemars(with = "Option<Vec<Bound>>")]
+    pub(super) u: Option<Spanned<Vec<Spanned<Bound>>>>,
+    /// Numbers that expressions name.
+    #[schemars(with = "Option<BTreeMap<String, f64>>")]
+    pub(super) constants: Option<Spanned<BTreeMap<String, Spanned<f64>>>>,
+    /// X of an expression, mm, in u.
+    #[serde(rename = "X")]
+    #[schemars(with = "Option<String>")]
+    pub(super) x: Option<Spanned<String>>,
+    /// Y of an expression, mm, in u.
+    #[serde(rename = "Y")]
+    #[schemars(with = "Option<String>")]
+    pub(super) y: Option<Spanned<String>>,
+    /// Z of an expression, mm, in u.
+    #[serde(rename = "Z")]
+    #[schemars(with = "Option<String>")]
+    pub(super) z: Option<Spanned<String>>,
+    /// U of an expression, mm, in u.
+    #[serde(rename = "U")]
+    #[schemars(with = "Option<String>")]
+    pub(super) u_axis: Option<Spanned<String>>,
+    /// V of an expression, mm, in u.
+    #[serde(rename = "V")]
+    #[schemars(with = "Option<String>")]
+    pub(super) v: Option<Spanned<String>>,
+    /// W of an expression, mm, in u.
+    #[serde(rename = "W")]
+    #[schemars(with = "Option<String>")]
+    pub(super) w: Option<Spanned<String>>,
+    /// A of an expression, degrees, in u.
+    #[serde(rename = "A")]
+    #[schemars(with = "Option<String>")]
+    pub(super) a: Option<Spanned<String>>,
+    /// B of an expression, degrees, in u.
+    #[serde(rename = "B")]
+    #[schemars(with = "Option<String>")]
+    pub(super) b: Option<Spanned<String>>,
+    /// C of an expression, degrees, in u.
+    #[serde(rename = "C")]
+    #[schemars(with = "Option<String>")]
+    pub(super) c: Option<Spanned<String>>,
+}
+
+/// An end of a range: a number, or an expression of constants.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum Bound {
+    /// A number.
+    Number(f64),
+    /// An expression.
+    Text(String),
+}
+
+impl CurveTable {
+    /// The expressions of all axes.
+    pub(super) fn expressions(&self) -> [(&'static str, &Option<Spanned<String>>); 9] {
+        [
+            ("X", &self.x),
+            ("Y", &self.y),
+            ("Z", &self.z),
+            ("U", &self.u_axis),
+            ("V", &self.v),
+            ("W", &self.w),
+            ("A", &self.a),
+            ("B", &self.b),
+            ("C", &self.c),
+        ]
+    }
 }
 
 /// What the machine needs beside the path. A program needs feed and retract.

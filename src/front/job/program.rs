@@ -15,7 +15,7 @@
 use super::{Job, MEET, Placed, parse};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Curve, Cut, Intent, Located, Polyline, Program, Role, Step};
+use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step};
 use crate::source::{Source, SourceId};
 use crate::units::Position;
 
@@ -72,7 +72,7 @@ impl Job {
             take(&placed.start);
             match &placed.curve {
                 Curve::Lines(line) | Curve::Through(_, line) => line.points().for_each(|point| take(&point)),
-                Curve::Polynomial(pieces) => {
+                Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
                     pieces.iter().flat_map(Bezier::control_points).for_each(take);
                 }
                 Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(take),

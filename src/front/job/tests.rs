@@ -126,3 +126,18 @@ fn what_is_wrong_is_named() {
     let a = PROCESS.replace("\"Z\"", "\"A\"");
     assert_eq!(ids(&format!("{a}{QUARTER}")), ["retract-axis"]);
 }
+
+#[test]
+fn expressions_are_stood_for_within_their_bound() {
+    let text = "[[curve]]\nkind = \"expression\"\nat = { X = 3 }\nu = [\"-pi/2\", 1]\nconstants = { r = 2.0 }\n\
+                Z = \"r*sin(u)\"\nA = \"deg(u)\"\n";
+    let source = Source::new("t", text);
+    let job = parse(&source, SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"));
+    let placed = &job.curves[0];
+    let Curve::Formula(described) = &placed.curve else { panic!("{:?}", placed.curve) };
+    // X Z A in the order of the program.
+    assert_eq!((placed.start[0], placed.start[1], placed.start[2]), (3.0, -2.0, -90.0));
+    assert_eq!(described.formula.range(), (-std::f64::consts::FRAC_PI_2, 1.0));
+    // The bound is that of the quintics; X rests, and has the allowance for rounding only.
+    assert!(described.bound[0] == 0.0 && 0.0 < described.bound[1] && described.bound[1] <= 1.1e-8);
+}

@@ -63,7 +63,7 @@ impl Reader {
                     if !x.is_finite() || (positive && x <= 0.0) {
                         self.error(
                             "axis-limit",
-                            "a limit is a finite number, a speed greater than zero",
+                            "a limit is a finite number, a speed or an acceleration greater than zero",
                             value.span(),
                         );
                     }
@@ -75,6 +75,7 @@ impl Reader {
             number(own.max, &mut limits.max, false);
             number(own.max_speed, &mut limits.max_speed, true);
             number(own.max_acceleration, &mut limits.max_acceleration, true);
+            number(own.max_step, &mut limits.max_step, true);
             number(own.home, &mut limits.home, false);
             if let (Some(min), Some(max)) = (limits.min, limits.max)
                 && max <= min

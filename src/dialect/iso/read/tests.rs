@@ -103,7 +103,7 @@ fn the_order_may_be_missing_and_the_degree_may_stand_for_it() {
     let degree = B.replace("P4", "P3");
     assert!(same(&degree));
     let warnings = flat(&degree).unwrap().warnings;
-    assert_eq!(warnings.0.iter().map(|d| d.id).collect::<Vec<_>>(), ["start-unknown", "order-is-degree"]);
+    assert_eq!(warnings.0.iter().map(|d| d.id).collect::<Vec<_>>(), ["order-is-degree", "start-unknown"]);
 }
 
 #[test]

@@ -9,9 +9,9 @@ pub(super) const SYSTEM: System = System {
     name: "catia",
     words: "catia",
     recognise: |head| {
-        head.has("CATIA APT VERSION")
-            || head.has("$$*CATIA0")
-            || head.has("BEGIN NURBS_SIEMENS")
+        head.line("$$CATIAAPTVERSION")
+            || head.line("$$*CATIA0")
+            || head.line("BEGINNURBS_SIEMENS")
             || (head.line("INDIRV/") && head.line("TLON,"))
     },
 };

@@ -8,5 +8,5 @@ use super::System;
 pub(super) const SYSTEM: System = System {
     name: "creo",
     words: "creo",
-    recognise: |head| head.has("PRO/CLFILE") || head.line("$$->MFGNO") || head.line("$$->FEATNO"),
+    recognise: |head| head.line("$$*PRO/CLFILE") || head.line("$$->MFGNO") || head.line("$$->FEATNO"),
 };

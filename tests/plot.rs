@@ -1,0 +1,157 @@
+//! `splinepost plot`: every figure is there, XML is sound, bytes are the same.
+
+use crate::support::folder;
+use splinepost::machine::Machine;
+use splinepost::plot::deviation::deviation;
+use splinepost::simulate::track::{Setting, Track};
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::{Options, compile, front};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const MILL: &str = "fixtures/compile/conical-mill/input.toml";
+
+/// The figures of a cutter's program.
+const FIGURES: [&str; 17] = [
+    "trace",
+    "trace-start",
+    "trace-end",
+    "steps",
+    "xy",
+    "xz",
+    "yz",
+    "spatial",
+    "rotary",
+    "cutter",
+    "deviation",
+    "feed",
+    "acceleration",
+    "acceleration-rotary",
+    "curvature",
+    "feed-error",
+    "chord-error",
+];
+
+fn plot(arguments: &[&str], output: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_splinepost"))
+        .arg("plot")
+        .args(arguments)
+        .arg("-o")
+        .arg(output)
+        .current_dir(folder(""))
+        .output()
+        .expect("it runs")
+}
+
+fn drawn(arguments: &[&str], output: &Path) -> String {
+    let ran = plot(arguments, output);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    std::fs::read_to_string(output).expect("the picture")
+}
+
+#[test]
+fn a_page_has_every_figure_and_the_same_bytes() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let arguments = [MILL, "--to", "heidenhain", "--feed", "6000"];
+    let page = drawn(&arguments, &dir.path().join("a.html"));
+    for id in FIGURES {
+        assert_eq!(page.matches(&format!("<figure id=\"{id}\">")).count(), 1, "{id}");
+    }
+    assert_eq!(page.matches("<figure ").count(), FIGURES.len());
+    assert_eq!(page, drawn(&arguments, &dir.path().join("b.html")));
+    for outside in ["<script", "http://", "https://", "src="] {
+        let found = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!found.contains(outside), "{outside}");
+    }
+}
+
+#[test]
+fn a_sheet_is_sound_xml_with_numbers_only() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let program = "fixtures/compile/conical-mill/sinumerik-bspline.mpf";
+    let machine = "fixtures/compile/conical-mill/sinumerik-bspline.machine.toml";
+    let arguments = [program, "--to", machine, "--against", MILL, "--feed", "6000"];
+    let sheet = drawn(&arguments, &dir.path().join("a.svg"));
+    let tree = roxmltree::Document::parse(&sheet).expect("XML");
+    let ids: Vec<&str> = tree.root_element().children().filter_map(|node| node.attribute("id")).collect();
+    assert_eq!(ids, FIGURES);
+    assert!(!sheet.contains("NaN") && !sheet.contains("inf"));
+    // A B-spline of ten flutes' control points is drawn as its polygon.
+    assert!(sheet.contains("control polygons") && sheet.contains("block ends"));
+}
+
+#[test]
+fn an_input_alone_is_drawn_without_what_needs_a_program() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let page = drawn(&[MILL, "--feed", "6000"], &dir.path().join("a.html"));
+    for id in FIGURES {
+        assert_eq!(page.contains(&format!("<figure id=\"{id}\">")), id != "deviation", "{id}");
+    }
+}
+
+#[test]
+fn the_deviation_drawn_is_within_what_is_proved() {
+    let text = std::fs::read_to_string(folder(MILL)).expect("the input");
+    let sources = Sources::new(Source::new("input.toml", text));
+    let language = front::find("cutter").expect("the cutter language");
+    for name in ["sinumerik", "heidenhain"] {
+        let machine = Machine::built_in(name).expect("a machine");
+        let output = compile(&sources, language, &machine, &Options::default())
+            .unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics));
+        let reading = (machine.dialect.read)(&output.text, SourceId::PROGRAM, &machine)
+            .unwrap_or_else(|e| panic!("{e:?}"));
+        let setting = Setting { machine: Some(&machine), tolerance: 0.001, ..Setting::default() };
+        let program = Track::of_decimals(&reading.value.decimals, &setting).expect("a track");
+        let asked = Track::of_program(&output.intent.program, &setting).expect("a track");
+        let (log, ..) = output.intent.logarithmic().next().expect("a flute");
+        let drawn = deviation(&program, &asked, Some(&log.curve)).expect("the same runs");
+        let most = drawn.iter().map(|p| p[1]).fold(0.0, f64::max);
+        let proved = output.report.expect("a proof").deviation.mm;
+        // The bound is at equal X, the picture shows the nearest place, which is no farther; along a helix of 30° the
+        // nearest is cos 30° of it, and bounds are within a few percent.
+        assert!(most <= proved && 0.5 * proved < most, "{name}: {most:e}, {proved:e}");
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name);
+    std::fs::copy(folder(MILL), at("mill.html")).expect("copied");
+    let mill = at("mill.html").display().to_string();
+    let cases: &[(&[&str], PathBuf, &str)] = &[
+        (&[MILL], at("a.png"), "output-kind"),
+        (&[&mill, "--from", "cutter"], at("mill.html"), "output-is-input"),
+        (&[MILL, "--against", MILL], at("a.svg"), "against-unused"),
+        (&["none.toml"], at("a.svg"), "file-unreadable"),
+        (&[MILL, "--to", "nowhere"], at("a.svg"), "machine-unknown"),
+    ];
+    for (arguments, output, id) in cases {
+        let ran = plot(arguments, output);
+        let told = String::from_utf8_lossy(&ran.stderr).into_owned();
+        assert_eq!(ran.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains(id), "{arguments:?}: {told}");
+    }
+    assert!(!at("a.svg").exists() && !at("a.png").exists());
+}
+
+#[test]
+#[ignore = "needs chromium: cargo test --test tests -- --ignored chromium"]
+fn pages_open_in_chromium_without_errors() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let page = dir.path().join("page.html");
+    drawn(&[MILL, "--to", "sinumerik", "--feed", "6000"], &page);
+    let output = Command::new("chromium")
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", dir.path().join("profile").display()))
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .expect("chromium runs");
+    let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    for id in FIGURES {
+        assert!(dom.contains(&format!("<figure id=\"{id}\">")), "{id}");
+    }
+    assert!(dom.ends_with("</html>\n") && FIGURES.len() <= dom.matches("</svg>").count());
+    let logged: Vec<&str> = log.lines().filter(|line| line.contains("CONSOLE")).collect();
+    assert!(logged.is_empty(), "{logged:?}");
+}
