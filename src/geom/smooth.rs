@@ -1,14 +1,14 @@
 //! Runs of many points become C2 cubic B-splines, corners kept.
 //!
 //! 1. **Corners.** The run is simplified within the tolerance (Douglas and Peucker); where the simplified path turns by
-//!    more than [`CORNER`] degrees, both of its segments being longer than the tolerance reaches, is a corner. Noise turns the
+//!    more than `CORNER` degrees, both of its segments being longer than the tolerance reaches, is a corner. Noise turns the
 //!    points of a run, but not its simplified path.
 //! 2. **A spline from corner to corner**, by least squares on the chord lengths, its ends exact. It begins with one span; every
 //!    span that is too far from a point is halved, until all hold. A long line among short ones gets points of its own, so
 //!    that the spline has no room to swing beside it.
 //! 3. **One curve.** Splines are put together with triple knots at the corners.
 //!
-//! Where halving a span leaves it fewer than [`LEAST`] points the run stays lines. How far the result is from the polyline
+//! Where halving a span leaves it fewer than `LEAST` points the run stays lines. How far the result is from the polyline
 //! is proved on the text that is read back.
 
 use super::bezier::Bezier;
