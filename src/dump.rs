@@ -168,6 +168,8 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
             Auxiliary::Stop => writeln!(text, "stop"),
             Auxiliary::OptionalStop => writeln!(text, "optional stop"),
             Auxiliary::Dwell(seconds) => writeln!(text, "dwell {seconds}"),
+            Auxiliary::TipControl => writeln!(text, "tip control"),
+            Auxiliary::TipControlEnd => writeln!(text, "tip control ends"),
         },
         Step::Home(axis) => writeln!(text, "home {}", axes.name(*axis)),
         Step::Shift(shifts) => {

@@ -97,6 +97,10 @@ pub enum Auxiliary<N> {
     OptionalStop,
     /// So many seconds pass.
     Dwell(N),
+    /// From here on the tip of the tool is led and the tool's direction is stated: TRAORI, M128, G43.5.
+    TipControl,
+    /// That ends.
+    TipControlEnd,
 }
 
 impl<N> Auxiliary<N> {
@@ -108,6 +112,8 @@ impl<N> Auxiliary<N> {
             Auxiliary::Stop => "stop",
             Auxiliary::OptionalStop => "optional_stop",
             Auxiliary::Dwell(_) => "dwell",
+            Auxiliary::TipControl => "tip_control",
+            Auxiliary::TipControlEnd => "tip_control_end",
         }
     }
 
@@ -119,6 +125,8 @@ impl<N> Auxiliary<N> {
             Auxiliary::Stop => Auxiliary::Stop,
             Auxiliary::OptionalStop => Auxiliary::OptionalStop,
             Auxiliary::Dwell(seconds) => Auxiliary::Dwell(f(seconds)?),
+            Auxiliary::TipControl => Auxiliary::TipControl,
+            Auxiliary::TipControlEnd => Auxiliary::TipControlEnd,
         })
     }
 }

@@ -139,7 +139,7 @@ pub fn compile(
     let motion = match asked {
         Some(motion) => motion,
         None => {
-            let fitted = options.fit.then(|| pass::fit::fit(&intent, FIT_SHARE * tolerance));
+            let fitted = options.fit.then(|| pass::fit::fit(&intent, &machine, FIT_SHARE * tolerance));
             let chosen = pass::choose::choose(&intent, fitted.as_ref(), &machine, tolerance)?;
             warnings.extend(chosen.warnings);
             chosen.value
@@ -174,7 +174,11 @@ pub fn compile(
                 return Ok(Output { text, report, motion, intent, tolerance, setup, warnings });
             }
             Err(error) => {
-                let refine = error.diagnostics.0.iter().all(|d| d.id == "deviation-too-large");
+                let refine = error
+                    .diagnostics
+                    .0
+                    .iter()
+                    .all(|d| matches!(d.id, "deviation-too-large" | "direction-too-far"));
                 failure = error;
                 if !refine || (exact && share == 0.05 && !pass::approximate::may_be_exact(&intent)) {
                     break;
@@ -213,7 +217,7 @@ impl Attempt<'_> {
         let no_verify = self.options.no_verify;
         let form = self.motion.form;
         let splines = matches!(form, Form::Polynomial { .. } | Form::Nurbs);
-        let fitted = (self.options.fit && splines).then(|| pass::fit::fit(intent, FIT_SHARE * fit));
+        let fitted = (self.options.fit && splines).then(|| pass::fit::fit(intent, machine, FIT_SHARE * fit));
         let source = fitted.as_ref().unwrap_or(intent);
         let program = pass::interpolate::interpolate(source, form, machine, (fit, tolerance), exact)?;
         let mut program = pass::convert::convert(program, form, machine, self.asked)?;

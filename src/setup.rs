@@ -4,11 +4,12 @@
 use crate::decimal::Decimal;
 use crate::dialect::Form;
 use crate::dialect::parts::Assigned;
-use crate::ir::{Curve, Decimals, Intent, Role, Step, Written};
-use crate::machine::{Machine, Moves};
+use crate::geom::direction;
+use crate::ir::{Curve, Decimals, Intent, Role, Step, Units, Written};
+use crate::machine::{Machine, Moves, Turn};
 use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
-use crate::units::{Axes, Kind, Position};
+use crate::units::{Axes, DEGREES, Kind, Position};
 use serde::Serialize;
 
 /// The figures of a program on one machine.
@@ -18,6 +19,10 @@ pub struct Setup {
     pub zero: Option<String>,
     /// How far and how fast each axis goes.
     pub axes: Vec<AxisFigures>,
+    /// The least and the greatest angle of the tool to Z, degrees, in five axes.
+    pub tilt: Option<[f64; 2]>,
+    /// Where rotary axes go evenly between two directions: how far that leaves the great circle at most, degrees.
+    pub turn: Option<f64>,
     /// Where rapids are clear: an axis and its place.
     pub clear: Option<(String, f64)>,
     /// Axes that retract in machine coordinates.
@@ -55,7 +60,8 @@ impl Setup {
         let axes = decimals.program.axes;
         let extents = range::counted_extents(decimals, machine);
         let speeds = limits::greatest_speeds(decimals, machine);
-        let figures = (0..axes.count()).map(|i| {
+        let places = axes.direction().unwrap_or(axes.count());
+        let figures = (0..places).map(|i| {
             let (low, high) = extents[i];
             AxisFigures {
                 axis: axes.name(i).to_string(),
@@ -90,6 +96,8 @@ impl Setup {
         Setup {
             zero: zero(intent),
             axes: figures.collect(),
+            tilt: tilt(decimals),
+            turn: (machine.orientation.turn == Turn::Tilt).then(|| departure(decimals)).flatten(),
             clear: clear(intent),
             home,
             paths: minutes.len(),
@@ -123,6 +131,9 @@ impl Setup {
             })
             .collect();
         lines.push(format!("RANGE: {}", ranges.join(", ")));
+        if let Some([least, most]) = self.tilt {
+            lines.push(format!("TOOL AXIS: {} TO {} DEGREES FROM Z", short(least, 3), short(most, 3)));
+        }
         if let Some((axis, to)) = &self.clear {
             let home = if self.home.is_empty() {
                 String::new()
@@ -218,6 +229,9 @@ fn not_covered(intent: &Intent) -> Vec<String> {
     if intent.logarithmic().next().is_some() {
         all.push("the wheel's radius and profile".to_owned());
     }
+    if intent.program.axes.direction().is_some() {
+        all.push("where the rotary axes go and what they meet there".to_owned());
+    }
     all
 }
 
@@ -257,9 +271,78 @@ fn parameters(decimals: &Decimals, machine: &Machine) -> Vec<String> {
     parameters
 }
 
+/// The directions that a program states, those of second curves at their control points, each with the one before it in a
+/// run of lines.
+fn directions(decimals: &Decimals, first: usize, mut take: impl FnMut([f64; 3], Option<[f64; 3]>)) {
+    let of = |units: &Units| {
+        let place = decimals.position(units);
+        [place[first], place[first + 1], place[first + 2]]
+    };
+    for located in &decimals.program.steps {
+        match &located.step {
+            Step::Cut(cut) => match &cut.curve {
+                Written::Lines(line) | Written::Through(_, line) => {
+                    let mut before = of(&line.start);
+                    for point in line.points() {
+                        let d = of(&point);
+                        take(d, Some(before));
+                        before = d;
+                    }
+                }
+                Written::Nurbs(nurbs) => nurbs.points.iter().for_each(|point| take(of(point), None)),
+                Written::Polynomial(polynomial) => {
+                    take(of(&polynomial.start), None);
+                    polynomial.blocks.iter().for_each(|block| take(of(&block.end), None));
+                }
+                Written::Arc(arc) => take(of(&arc.end), None),
+            },
+            Step::Rapid(targets) => {
+                let component = |i: usize| targets.iter().find(|(axis, _)| *axis == first + i);
+                if let [Some((_, x)), Some((_, y)), Some((_, z))] = [0, 1, 2].map(component) {
+                    take([x.to_f64(), y.to_f64(), z.to_f64()], None);
+                }
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
+}
+
+/// How far the tool is tilted, degrees.
+fn tilt(decimals: &Decimals) -> Option<[f64; 2]> {
+    let first = decimals.program.axes.direction()?;
+    let mut range: Option<[f64; 2]> = None;
+    directions(decimals, first, |d, _| {
+        let tilt = direction::tilt(&d);
+        let [least, most] = range.unwrap_or([tilt, tilt]);
+        range = Some([least.min(tilt), most.max(tilt)]);
+    });
+    range
+}
+
+/// How far rotary axes that go evenly leave the great circle, degrees.
+fn departure(decimals: &Decimals) -> Option<f64> {
+    let first = decimals.program.axes.direction()?;
+    let mut worst = 0.0f64;
+    directions(decimals, first, |d, before| {
+        if let Some(before) = before {
+            worst = worst.max(direction::tilt_departure(&before, &d) * DEGREES);
+        }
+    });
+    Some(worst)
+}
+
 /// What the motions of a program need.
 fn needs(decimals: &Decimals, machine: &Machine) -> Vec<String> {
     let mut needs: Vec<String> = Vec::new();
+    if decimals.program.axes.direction().is_some() {
+        needs.push("five-axis transformation".to_owned());
+    }
     for cut in decimals.program.steps.iter().filter_map(|located| located.step.cut()) {
         let form = match &cut.curve {
             Written::Lines(_) | Written::Arc(_) => continue,

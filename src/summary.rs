@@ -37,7 +37,7 @@ pub struct Summary {
     pub map: Option<&'static str>,
     /// The greatest deviation, at the surface of a cutter, mm.
     pub deviation_mm: Option<f64>,
-    /// The greatest deviation in a rotary axis, radians.
+    /// The greatest deviation in a rotary axis or of the tool axis, radians.
     pub deviation_rad: Option<f64>,
     /// Where lines follow odd-even steps: the steps' distance from the ideal curve, mm.
     pub steps_from_ideal_mm: Option<f64>,
@@ -168,10 +168,21 @@ impl Summary {
                 "  {axis:<10} {low:.3} to {high:.3} {unit}, at most {speed:.0} {unit}/min at feed{work}"
             );
         }
+        if let Some([least, most]) = self.setup.tilt {
+            let _ = writeln!(text, "  tool axis  {least:.3} to {most:.3} degrees from Z");
+        }
+        if let Some(turn) = self.setup.turn {
+            let _ = writeln!(
+                text,
+                "  turning    rotary axes go evenly and leave the great circle by up to {turn:.4} degrees (sampled)"
+            );
+        }
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
                 let where_to = if self.cutter.is_some() {
                     format!(" at the surface, {rad:.2e} rad in A")
+                } else if self.setup.tilt.is_some() {
+                    format!(" at the tip, {:.2e} degrees of the tool axis", rad * DEGREES)
                 } else if 0.0 < rad {
                     format!(", {rad:.2e} rad in rotary axes")
                 } else {

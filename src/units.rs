@@ -104,6 +104,23 @@ impl Axes {
         Axes { list, len: 4 }
     }
 
+    /// X Y Z of the tool's tip in millimetres and TX TY TZ, a vector from the tip along the tool: the coordinates of five
+    /// axes. The length of the vector means nothing.
+    pub fn with_direction() -> Axes {
+        let mut axes = Axes::xyza();
+        for (i, letter) in (b'X'..=b'Z').enumerate() {
+            axes.list[3 + i] = (Axis { bytes: [b'T', letter, 0, 0], len: 2 }, Kind::Direction);
+        }
+        axes.len = 6;
+        axes
+    }
+
+    /// The first of the three components of the tool's direction, where the run has one.
+    #[inline]
+    pub fn direction(&self) -> Option<usize> {
+        self.as_slice().iter().position(|(_, kind)| *kind == Kind::Direction)
+    }
+
     /// The axes in order.
     pub fn as_slice(&self) -> &[(Axis, Kind)] {
         &self.list[..self.len]
@@ -138,6 +155,13 @@ mod tests {
     fn names_are_a_letter_then_letters_or_digits() {
         assert_eq!(Axis::new("x1").unwrap().as_str(), "X1");
         assert!(Axis::new("1X").is_none() && Axis::new("").is_none() && Axis::new("ABCDE").is_none());
+    }
+
+    #[test]
+    fn a_direction_stands_behind_the_tip() {
+        let axes = Axes::with_direction();
+        assert_eq!((axes.count(), axes.direction(), Axes::xyza().direction()), (6, Some(3), None));
+        assert_eq!(axes.name(5).as_str(), "TZ");
     }
 
     #[test]

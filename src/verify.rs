@@ -40,7 +40,7 @@ use crate::machine::Machine;
 use crate::pass::stretch::of_curve;
 use crate::setup::Setup;
 use crate::source::{SourceId, Span};
-use crate::units::{MAX_AXES, Position};
+use crate::units::{DEGREES, MAX_AXES, Position};
 
 pub use form::same_form;
 
@@ -202,6 +202,20 @@ pub fn verify(
                     );
                     let diagnostic = Diagnostic::refusal("deviation-too-large", message);
                     // Looked up only now: finding a line reads the text.
+                    (cursor.at, cursor.within) = (at, within);
+                    return Err(match cursor.step() {
+                        Some(step) => diagnostic.at(cursor.place(step), "").into(),
+                        None => diagnostic.into(),
+                    });
+                }
+                let angle = found.deviation.rad * DEGREES;
+                let allowed = machine.orientation.tolerance;
+                if intent.program.axes.direction().is_some() && !(angle <= allowed) {
+                    let message = format!(
+                        "the tool is turned by up to {angle:.4} degrees from where it should be, more than the {allowed} of \
+                         the machine file"
+                    );
+                    let diagnostic = Diagnostic::refusal("direction-too-far", message);
                     (cursor.at, cursor.within) = (at, within);
                     return Err(match cursor.step() {
                         Some(step) => diagnostic.at(cursor.place(step), "").into(),

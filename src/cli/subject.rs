@@ -38,6 +38,7 @@ impl Subject {
         if let Some(to) = self.machine_of_program(sources)? {
             let machine = machine(to, sources)?;
             let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
+            let machine = machine.for_program(text);
             let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
             return Ok(Understood::Program(Box::new(machine), reading));
         }

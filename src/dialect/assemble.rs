@@ -5,10 +5,12 @@
 
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
-use crate::ir::{Cut, Decimals, Located, Program, Role, Shift, Step, Units, Written, WrittenPoints};
+use crate::ir::{
+    Auxiliary, Cut, Decimals, Located, Program, Role, Shift, Step, Units, Written, WrittenPoints,
+};
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
-use crate::units::{Axis, MAX_AXES};
+use crate::units::{Axis, Kind, MAX_AXES};
 use std::collections::BTreeMap;
 
 /// A program in the making.
@@ -107,7 +109,35 @@ impl<'m> Assembler<'m> {
 
     /// Which axis a name of any length names.
     pub fn axis(&self, name: &str) -> Option<usize> {
-        Axis::new(name).and_then(|axis| self.machine.axes.index_of(axis))
+        let axes = self.machine.axes;
+        Axis::new(name).and_then(|axis| axes.index_of(axis)).filter(|i| axes.kind(*i) != Kind::Direction)
+    }
+
+    /// The components of a direction as a block names them, behind the axes of the block.
+    pub fn direction(
+        &mut self,
+        components: [Option<Decimal>; 3],
+        range: std::ops::Range<usize>,
+    ) -> Option<[(usize, i64); 3]> {
+        let Some(first) = self.machine.axes.direction() else {
+            let message = "this program leads no tip, so that no block states the tool's direction";
+            self.error("direction", message, range);
+            return None;
+        };
+        let mut named = [(0, 0); 3];
+        for (i, component) in components.into_iter().enumerate() {
+            let Some(component) = component else {
+                let message = "the direction of the tool has three components, and each is written";
+                self.error("direction-incomplete", message, range);
+                return None;
+            };
+            named[i] = (first + i, self.units(first + i, component, range.clone())?);
+        }
+        if named.iter().all(|(_, units)| *units == 0) {
+            self.error("direction", "the direction of the tool has no length", range);
+            return None;
+        }
+        Some(named)
     }
 
     /// A position in units of the axis' last decimal, counted from the work's own zero; where it has more decimals, an
@@ -128,6 +158,13 @@ impl<'m> Assembler<'m> {
             );
         }
         units
+    }
+
+    /// The number that stands in the text for a position.
+    pub fn counted(&self, axis: usize, units: i64) -> Option<Decimal> {
+        let counted = units.checked_sub(self.shift[axis])?;
+        let counted = if self.reversed[axis] { counted.checked_neg()? } else { counted };
+        Some(Decimal::new(counted, self.digits[axis]))
     }
 
     /// The place nearest to where an axis is that is `units` but for whole turns: the short way round. None where
@@ -220,6 +257,15 @@ impl<'m> Assembler<'m> {
             | Step::Rapid(_)
             | Step::Cut(_) => None,
         })
+    }
+
+    /// Whether the last step is that the tip is led from here on.
+    pub fn begins_tip_control(&self) -> bool {
+        self.run.is_none()
+            && self
+                .steps
+                .last()
+                .is_some_and(|last| matches!(last.step, Step::Auxiliary(Auxiliary::TipControl)))
     }
 
     fn arrive(&mut self, point: &Units) {

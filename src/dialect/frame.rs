@@ -71,7 +71,7 @@ impl<'m> Frame<'m> {
     }
 
     /// The lists of lines that may stand anywhere behind the header.
-    fn lists(&self) -> [&'m [Template]; 11] {
+    fn lists(&self) -> [&'m [Template]; 13] {
         let frame = &self.machine.frame;
         [
             &frame.tool_spindle,
@@ -84,6 +84,8 @@ impl<'m> Frame<'m> {
             &frame.stop,
             &frame.optional_stop,
             &frame.dwell,
+            &frame.tip_control,
+            &frame.tip_control_end,
             &frame.shift,
         ]
     }
@@ -165,7 +167,7 @@ impl<'m> Frame<'m> {
             return Met::Fixed;
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins like one; a byte decides.
-        for lines in &self.lists()[..10] {
+        for lines in &self.lists()[..12] {
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
                 && self.take(template, text, span, true, assembler)
@@ -213,7 +215,14 @@ impl<'m> Frame<'m> {
 
     /// Which switch a line is.
     fn switch(&self, text: &str) -> Option<Auxiliary<Decimal>> {
-        let all = [Auxiliary::CoolantStop, Auxiliary::SpindleStop, Auxiliary::Stop, Auxiliary::OptionalStop];
+        let all = [
+            Auxiliary::CoolantStop,
+            Auxiliary::SpindleStop,
+            Auxiliary::Stop,
+            Auxiliary::OptionalStop,
+            Auxiliary::TipControl,
+            Auxiliary::TipControlEnd,
+        ];
         all.into_iter().find(|switch| {
             let first = self.machine.frame.auxiliary(switch).first();
             first.is_some_and(|template| begins_alike(template, text) && template.matched(text).is_some())
@@ -272,8 +281,9 @@ impl<'m> Frame<'m> {
                 }
                 "tool" => {
                     let Ok(number) = value.parse::<u32>() else { return false };
-                    // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
-                    if first {
+                    // A line that follows, as `G43 H{tool}`, names the same tool or is another line; so does one that takes
+                    // the length of the tool for five axes.
+                    if first && self.machine.frame.tip_control.first() != Some(template) {
                         assembler.step(Step::Tool(number), span);
                     } else if assembler.tool() != Some(number) {
                         return false;

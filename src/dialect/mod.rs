@@ -54,6 +54,10 @@ pub struct Dialect {
     pub round: Round,
     /// Whether it has a word for an arc in this plane, and for one that leaves the plane as a helix; others become lines.
     pub takes_arc: fn(Plane, bool) -> bool,
+    /// The words of the three components of the tool's direction.
+    pub direction: [&'static str; 3],
+    /// Whether it has words for the curve of a second point of the tool.
+    pub second_curve: bool,
     /// Spells a legal program.
     pub write: fn(&Legal, &Machine) -> String,
     /// Reads a program.

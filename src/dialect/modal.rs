@@ -17,6 +17,8 @@ pub struct Modal<'m> {
     /// How numbers are spelled.
     pub spelling: Spelling,
     digits: [u8; MAX_AXES],
+    /// The first component of the tool's direction, in five axes.
+    pub direction: Option<usize>,
     /// Where the text counts each axis from, in units of its last decimal.
     shift: Units,
     /// Which axes the control counts the other way.
@@ -44,6 +46,7 @@ impl<'m> Modal<'m> {
             machine,
             spelling: machine.text.spelling(),
             digits: machine.axis_digits(),
+            direction: machine.axes.direction(),
             shift: [0; MAX_AXES],
             reversed: machine.reversed(),
             round: [false; MAX_AXES],
@@ -229,6 +232,9 @@ impl<'m> Modal<'m> {
     /// The name of an axis, with `=` where a value cannot follow it directly.
     #[inline]
     pub fn axis_name(&mut self, i: usize) {
+        if let Some(component) = self.direction.and_then(|first| i.checked_sub(first)) {
+            return self.text(self.machine.dialect.direction[component]);
+        }
         let name = self.machine.axes.name(i);
         self.text(name.as_str());
         if 1 < name.as_str().len() {
@@ -243,11 +249,12 @@ impl<'m> Modal<'m> {
         }
     }
 
-    /// The words of the axes that a straight move moves; the first where it moves none, since a block needs one.
+    /// The words of the axes that a straight move moves; the first where it moves none, since a block needs one. The tool's
+    /// direction is never modal.
     #[inline]
     pub fn moved_axes(&mut self, point: &Units, count: usize) {
         let mut moved = false;
-        for i in 0..count {
+        for i in 0..self.direction.unwrap_or(count) {
             if self.position[i] != Some(point[i]) {
                 self.axis(i, point[i]);
                 moved = true;
@@ -255,6 +262,9 @@ impl<'m> Modal<'m> {
         }
         if !moved {
             self.axis(0, point[0]);
+        }
+        for i in self.direction.unwrap_or(count)..count {
+            self.axis(i, point[i]);
         }
     }
 

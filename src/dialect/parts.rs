@@ -20,6 +20,8 @@ pub enum Part<'p> {
     Spindle,
     /// The lines that retract an axis in machine coordinates are written.
     Home(usize),
+    /// The lines that lead the tip of the tool, or end that, are written.
+    TipControl(bool),
     /// The lines of a work offset are written.
     Shift(&'p [Shift<Decimal>]),
     /// A remark that is no section: what to set up.
@@ -54,7 +56,7 @@ pub fn parts<'p>(decimals: &'p Decimals, machine: &Machine) -> (Vec<Part<'p>>, V
     let values = [("name", program.name.as_str()), ("number", &number), ("linear", &linear)];
     let assigned = Assigned::of(decimals, machine);
     let corrections = assigned.corrections.iter().map(|(axis, _, number)| (*axis, *number)).collect();
-    let mut walk = Walk { decimals, machine, parts: Vec::new(), bodies: Vec::new(), corrections };
+    let mut walk = Walk { decimals, machine, parts: Vec::new(), bodies: Vec::new(), corrections, tool: 0 };
     walk.fill(&frame.header, &values);
     walk.parts.extend(decimals.setup.iter().map(|remark| Part::Remark(remark)));
     walk.assign(&assigned);
@@ -109,6 +111,8 @@ struct Walk<'p, 'm> {
     bodies: Vec<Body<'p>>,
     /// The parameter of each axis that has a correction.
     corrections: Vec<(usize, u32)>,
+    /// The tool that was called last.
+    tool: u32,
 }
 
 /// The body of a section, and where its axes count from.
@@ -140,6 +144,7 @@ impl<'p> Walk<'p, '_> {
             rest = after;
             match &located.step {
                 Step::Tool(number) => {
+                    self.tool = *number;
                     let tool = number.to_string();
                     match rest.first().map(|next| &next.step) {
                         Some(Step::Spindle(rpm)) if !frame.tool_spindle.is_empty() => {
@@ -165,9 +170,21 @@ impl<'p> Walk<'p, '_> {
                         Auxiliary::CoolantStop
                         | Auxiliary::SpindleStop
                         | Auxiliary::Stop
-                        | Auxiliary::OptionalStop => String::new(),
+                        | Auxiliary::OptionalStop
+                        | Auxiliary::TipControl
+                        | Auxiliary::TipControlEnd => String::new(),
                     };
-                    self.fill(frame.auxiliary(auxiliary), &[("seconds", &seconds)]);
+                    let tool = self.tool.to_string();
+                    self.fill(frame.auxiliary(auxiliary), &[("seconds", &seconds), ("tool", &tool)]);
+                    match auxiliary {
+                        Auxiliary::TipControl => self.parts.push(Part::TipControl(true)),
+                        Auxiliary::TipControlEnd => self.parts.push(Part::TipControl(false)),
+                        Auxiliary::CoolantStop
+                        | Auxiliary::SpindleStop
+                        | Auxiliary::Stop
+                        | Auxiliary::OptionalStop
+                        | Auxiliary::Dwell(_) => {}
+                    }
                 }
                 Step::Home(axis) => {
                     let word = home_word(*axis, self.machine);

@@ -173,6 +173,13 @@ impl Arc {
         Ok(Arc { plane, sense, start, end, center: place, radius, angle, sweep, misfit })
     }
 
+    /// The same arc with other coordinates beside X Y Z, which `map` must leave alone.
+    #[must_use]
+    pub fn mapped_along(mut self, map: impl Fn(&Position) -> Position) -> Arc {
+        (self.start, self.end) = (map(&self.start), map(&self.end));
+        self
+    }
+
     /// Its plane.
     pub fn plane(&self) -> Plane {
         self.plane

@@ -59,7 +59,7 @@ const MAX_SPANS: usize = 4096;
 pub struct Bound {
     /// At the cutter's surface, mm; for other paths the distance in space.
     pub mm: f64,
-    /// In the rotary axis, radians.
+    /// In the rotary axis, or between the directions of the tool, radians.
     pub rad: f64,
 }
 
@@ -228,23 +228,37 @@ fn terms(piece: &Bezier, axis: usize) -> f64 {
     piece.numerator(axis).max_abs() + piece.numerator(0).max_abs()
 }
 
-/// How the distance of two positions is measured: mm for a linear axis, the arc at `radius` for a rotary one.
+/// How the distance of two positions is measured: mm for a linear axis, the arc at `radius` for a rotary one. A direction
+/// is no place: its components count nothing, or where a path is followed as so many mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// For each axis: 1 for a linear one, R/57.3 for a rotary one at radius R.
+    /// For each axis: 1 for a linear one, R/57.3 for a rotary one at radius R, mm for a component of a direction.
     scale: Vec<f64>,
     rotary: Vec<bool>,
+    direction: Vec<bool>,
 }
 
 impl Metric {
     /// Distance with rotary axes counted at `radius` mm.
     pub fn new(kinds: &[Kind], radius: f64) -> Metric {
+        Metric::with_direction(kinds, radius, 0.0)
+    }
+
+    /// The same with a component of a direction of length 1 counted as `reach` mm: that of a point so far from the tip.
+    pub fn with_direction(kinds: &[Kind], radius: f64, reach: f64) -> Metric {
         let scale = |kind: &Kind| match kind {
-            Kind::Linear | Kind::Direction => 1.0,
+            Kind::Linear => 1.0,
+            Kind::Direction => reach,
             Kind::Rotary => radius / DEGREES,
         };
         let rotary = kinds.iter().map(|kind| matches!(kind, Kind::Rotary)).collect();
-        Metric { scale: kinds.iter().map(scale).collect(), rotary }
+        let direction = kinds.iter().map(|kind| matches!(kind, Kind::Direction)).collect();
+        Metric { scale: kinds.iter().map(scale).collect(), rotary, direction }
+    }
+
+    /// How many mm a component of a direction of length 1 counts; 0 where there is none.
+    pub fn reach(&self) -> f64 {
+        self.scale.iter().zip(&self.direction).find(|(_, is)| **is).map_or(0.0, |(scale, _)| *scale)
     }
 
     /// The distance of two positions.

@@ -19,6 +19,17 @@
 //! where it would fall. Intervals are halved until the bound is within 2 % (and 2 thousandths of the tolerance) of the
 //! greatest distance seen.
 //!
+//! # Directions
+//!
+//! Where three coordinates are a direction of the tool, only its angle counts, and
+//!
+//! ```text
+//! sin ∠(D_p, D_c) = |D_p × D_c| / (|D_p| |D_c|)
+//! ```
+//!
+//! The cross product is a polynomial; its coefficients, taken as vectors, bound it from above, and the components of those of
+//! D_p and D_c∘φ along one direction each bound the lengths from below.
+//!
 //! # Rounding
 //!
 //! Every bound is raised by 256 ε (ε = 2.2e-16) of the greatest coordinate: a piece is cut by at most some thirty de
@@ -27,6 +38,7 @@
 use super::bernstein::{Bernstein, MAX_DEGREE};
 use super::bezier::Bezier;
 use super::deviation::OrderError;
+use super::direction;
 use crate::units::{MAX_AXES, Position};
 
 /// Allowance for rounding, relative to the greatest coordinate.
@@ -45,6 +57,8 @@ pub struct Followed {
     pub distance: f64,
     /// An upper bound on the difference in each coordinate.
     pub axes: [f64; MAX_AXES],
+    /// An upper bound on the angle between the directions of the tool, radians; 0 where there are none.
+    pub turn: f64,
     /// Which map it holds for.
     pub map: Map,
 }
@@ -86,6 +100,20 @@ fn distance(a: &Position, b: &Position) -> f64 {
 /// # Errors
 /// A number is not finite, or a path has no piece.
 pub fn follow(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Result<Followed, OrderError> {
+    follow_turning(path, curve, None, tolerance)
+}
+
+/// The same where three coordinates from `first` on are a direction, at length 1 where the path starts and scaled by `reach`:
+/// the angle between the directions is bounded too.
+///
+/// # Errors
+/// As above.
+pub fn follow_turning(
+    path: &[Bezier],
+    curve: &[Bezier],
+    direction: Option<(usize, f64)>,
+    tolerance: f64,
+) -> Result<Followed, OrderError> {
     let finite = |piece: &Bezier| {
         let weights = &piece.weights[..=piece.degree];
         weights.iter().all(|w| 0.0 < *w && w.is_finite())
@@ -95,12 +123,12 @@ pub fn follow(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Result<Follo
         return Err(OrderError::NotFinite);
     }
     if path.len() == curve.len() {
-        let mut bounds = Bounds::new(path, curve, tolerance);
+        let mut bounds = Bounds::new(path, curve, direction, tolerance);
         if path.iter().zip(curve).all(|(p, c)| at_equal_parameters(p, c, &mut bounds)) {
             return Ok(bounds.found(Map::Parameter));
         }
     }
-    let mut bounds = Bounds::new(path, curve, tolerance);
+    let mut bounds = Bounds::new(path, curve, direction, tolerance);
     along(&tamed(path), &tamed(curve), &mut bounds);
     Ok(bounds.found(Map::Nearest))
 }
@@ -110,13 +138,14 @@ fn at_equal_parameters(p: &Bezier, c: &Bezier, bounds: &mut Bounds) -> bool {
     let same = Bernstein::new(&[0.0, 1.0]);
     let mut stack = vec![(*p, *c, 0)];
     while let Some((p, c, depth)) = stack.pop() {
-        bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
+        bounds.look(&p, &c);
         if !(bounds.seen <= bounds.tolerance) {
             return false;
         }
         let (most, axes) = difference(bounds, &p, &c, &same);
-        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
-            bounds.take(most, &axes);
+        let turn = bounds.turn(&p, &c, &same);
+        if bounds.is_tight(most, turn) || depth == MAX_DEPTH || bounds.left == 0 {
+            bounds.take(most, &axes, turn);
             if !(bounds.distance <= bounds.tolerance) {
                 return false;
             }
@@ -165,21 +194,78 @@ struct Bounds {
     noise: f64,
     /// Coordinates that any point has.
     used: Vec<usize>,
+    /// The first component of a direction, and how many mm one of length 1 counts.
+    direction: Option<(usize, f64)>,
+    /// The greatest angle that is bounded, and the greatest that was seen, radians.
+    turned: f64,
+    seen_turned: f64,
     /// How many intervals may still be halved.
     left: usize,
 }
 
 impl Bounds {
-    fn new(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Bounds {
+    fn new(path: &[Bezier], curve: &[Bezier], direction: Option<(usize, f64)>, tolerance: f64) -> Bounds {
         let all = || path.iter().chain(curve).flat_map(Bezier::control_points);
         let greatest = |axis: usize| all().fold(0.0, |most, p| f64::max(most, p[axis].abs()));
         let used: Vec<usize> = (0..MAX_AXES).filter(|axis| greatest(*axis) != 0.0).collect();
         let noise = ROUNDING * used.iter().map(|axis| greatest(*axis)).fold(0.0, f64::max);
         let left = 4096 + 64 * (path.len() + curve.len());
-        Bounds { distance: 0.0, axes: [0.0; MAX_AXES], seen: 0.0, tolerance, noise, used, left }
+        Bounds {
+            distance: 0.0,
+            axes: [0.0; MAX_AXES],
+            seen: 0.0,
+            tolerance,
+            noise,
+            used,
+            direction,
+            turned: 0.0,
+            seen_turned: 0.0,
+            left,
+        }
     }
 
-    fn take(&mut self, distance: f64, axes: &[f64; MAX_AXES]) {
+    /// Looks at the ends of an interval.
+    fn look(&mut self, p: &Bezier, c: &Bezier) {
+        for (p, c) in [(p.start(), c.start()), (p.end(), c.end())] {
+            self.seen = self.seen.max(distance(&p, &c));
+            if let Some((first, _)) = self.direction {
+                self.seen_turned = self.seen_turned.max(direction::between(&p, &c, first));
+            }
+        }
+    }
+
+    /// The bound on the angle between the directions at equal t, radians.
+    fn turn(&self, p: &Bezier, c: &Bezier, phi: &Bernstein) -> f64 {
+        let Some((first, _)) = self.direction else { return 0.0 };
+        // The components of N(t) × M(φ(t)); weights divide both factors and leave the angle alone.
+        let n = [0, 1, 2].map(|i| p.numerator(first + i));
+        let m = [0, 1, 2].map(|i| compose(&c.numerator(first + i), phi));
+        let mut squares = [0.0; MAX_DEGREE + 1];
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let cross = n[i].times(&m[j]).combined(1.0, &n[j].times(&m[i]), -1.0);
+            for (square, x) in squares.iter_mut().zip(cross.coefficients()) {
+                *square += x * x;
+            }
+        }
+        let cross = squares.iter().copied().fold(0.0, f64::max).sqrt();
+        // Lengths from below, along one direction each.
+        let least = |d: &[Bernstein; 3]| {
+            let ends = |f: &Bernstein| f.coefficients()[0] + f.coefficients()[f.degree()];
+            let mean = [ends(&d[0]), ends(&d[1]), ends(&d[2])];
+            let size = mean.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (0..=d[0].degree())
+                .map(|k| (0..3).map(|i| d[i].coefficients()[k] * mean[i]).sum::<f64>() / size)
+                .fold(f64::INFINITY, f64::min)
+        };
+        let (p_least, m_least) = (least(&n), least(&m));
+        if !(0.0 < p_least && 0.0 < m_least) {
+            return f64::INFINITY;
+        }
+        direction::apart(cross, p_least * m_least).map_or(f64::INFINITY, |angle| angle + ROUNDING)
+    }
+
+    fn take(&mut self, distance: f64, axes: &[f64; MAX_AXES], turn: f64) {
+        self.turned = self.turned.max(turn);
         self.distance = self.distance.max(distance);
         for (most, axis) in self.axes.iter_mut().zip(axes) {
             *most = most.max(*axis);
@@ -187,12 +273,15 @@ impl Bounds {
     }
 
     /// Whether a bound is as close to what was seen as is worth while.
-    fn is_tight(&self, most: f64) -> bool {
-        most <= 1.02 * self.seen + 2.0e-3 * self.tolerance + 2.0 * self.noise
+    fn is_tight(&self, most: f64, turn: f64) -> bool {
+        let turned = self.direction.is_none_or(|(_, reach)| {
+            turn * reach <= 1.02 * self.seen_turned * reach + 2.0e-2 * self.tolerance + 2.0 * self.noise
+        });
+        turned && most <= 1.02 * self.seen + 2.0e-3 * self.tolerance + 2.0 * self.noise
     }
 
     fn found(&self, map: Map) -> Followed {
-        Followed { distance: self.distance, axes: self.axes, map }
+        Followed { distance: self.distance, axes: self.axes, turn: self.turned, map }
     }
 }
 
@@ -251,14 +340,14 @@ fn compose(f: &Bernstein, phi: &Bernstein) -> Bernstein {
 }
 
 /// φ with the slopes of nearest places at both ends, of the greatest degree that the products leave room for.
-fn rising(p: &Bezier, c: &Bezier) -> Bernstein {
+fn rising(p: &Bezier, c: &Bezier, turning: bool) -> Bernstein {
     let linear = Bernstein::new(&[0.0, 1.0]);
     let slope = |t: f64| {
         let ([_, p1, _], [_, c1, _]) = (p.derivatives(t), c.derivatives(t));
         dot(&p1, &c1) / dot(&c1, &c1)
     };
     let rational = !(p.is_polynomial() && c.is_polynomial());
-    let room = if rational { MAX_DEGREE - p.degree } else { MAX_DEGREE };
+    let room = if rational || turning { MAX_DEGREE - p.degree } else { MAX_DEGREE };
     let (first, last) = (slope(0.0).clamp(0.0, 3.0), slope(1.0).clamp(0.0, 3.0));
     if !(first.is_finite() && last.is_finite()) {
         return linear;
@@ -302,11 +391,12 @@ pub(super) fn foot(piece: &Bezier, q: &Position, guess: f64, low: f64, high: f64
 fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
     let mut stack = vec![(*p, *c, 0)];
     while let Some((p, c, depth)) = stack.pop() {
-        bounds.seen = bounds.seen.max(distance(&p.start(), &c.start())).max(distance(&p.end(), &c.end()));
-        let phi = rising(&p, &c);
+        bounds.look(&p, &c);
+        let phi = rising(&p, &c, bounds.direction.is_some());
         let (most, axes) = difference(bounds, &p, &c, &phi);
-        if bounds.is_tight(most) || depth == MAX_DEPTH || bounds.left == 0 {
-            bounds.take(most, &axes);
+        let turn = bounds.turn(&p, &c, &phi);
+        if bounds.is_tight(most, turn) || depth == MAX_DEPTH || bounds.left == 0 {
+            bounds.take(most, &axes, turn);
             continue;
         }
         bounds.left -= 1;
@@ -433,88 +523,4 @@ fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(x: f64, y: f64) -> Position {
-        [x, y, 0.0, 0.0, 0.0, 0.0]
-    }
-
-    /// A quarter of a circle of radius 10 about the origin, from angle `quarter`·90°.
-    fn quarter(quarter: usize) -> Bezier {
-        let turn = |x: f64, y: f64| match quarter % 4 {
-            0 => at(x, y),
-            1 => at(-y, x),
-            2 => at(-x, -y),
-            _ => at(y, -x),
-        };
-        let mut arc = Bezier::new(&[turn(10., 0.), turn(10., 10.), turn(0., 10.)]);
-        arc.weights[1] = 0.5f64.sqrt();
-        arc
-    }
-
-    fn cubic(quarter_of: usize, k: f64) -> Bezier {
-        let arc = quarter(quarter_of);
-        let towards = |p: &Position, q: &Position| std::array::from_fn(|i| p[i] + k * (q[i] - p[i]));
-        let [p0, p1, p2] = [0, 1, 2].map(|i| arc.points[i]);
-        Bezier::new(&[p0, towards(&p0, &p1), towards(&p2, &p1), p2])
-    }
-
-    #[test]
-    fn the_cubic_quarter_circle_has_its_known_radius_error() {
-        // k = 4/3 (√2 − 1): from 0 to +2.7253e-4 of the radius.
-        let k = 4.0 / 3.0 * (2.0f64.sqrt() - 1.0);
-        let path: Vec<Bezier> = (0..4).map(|i| cubic(i, k)).collect();
-        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
-        let found = follow(&path, &curve, 1e-4).unwrap();
-        assert_eq!(found.map, Map::Nearest);
-        assert!((2.7253e-3..2.79e-3).contains(&found.distance), "{found:?}");
-        // At equal parameters they are much farther apart.
-        let equal = follow(&path, &curve, 1.0).unwrap();
-        assert_eq!(equal.map, Map::Parameter);
-        let apart = (0..=100).map(|i| f64::from(i) / 100.0);
-        let apart = apart.fold(0.0, |most, t| f64::max(most, distance(&path[0].eval(t), &curve[0].eval(t))));
-        assert!(0.05 < apart && apart <= equal.distance, "{apart} {equal:?}");
-    }
-
-    #[test]
-    fn parts_of_one_curve_follow_it_to_rounding() {
-        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
-        let cuts = [0.0, 0.13, 0.5, 0.81, 1.0];
-        let parts: Vec<Bezier> =
-            curve.iter().flat_map(|arc| cuts.windows(2).map(|w| arc.segment(w[0], w[1]))).collect();
-        for (a, b) in [(&parts, &curve), (&curve, &parts)] {
-            let found = follow(a, b, 1e-6).unwrap();
-            assert!(found.distance < 1e-8, "{found:?}");
-        }
-        let raised: Vec<Bezier> = curve.iter().map(|arc| arc.raised_to(5)).collect();
-        let found = follow(&raised, &curve, 1e-6).unwrap();
-        assert!(found.map == Map::Parameter && found.distance < 1e-11, "{found:?}");
-    }
-
-    #[test]
-    fn a_dropped_or_doubled_piece_is_far() {
-        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
-        let without: Vec<Bezier> = [0, 1, 3].into_iter().map(quarter).collect();
-        let twice: Vec<Bezier> = (0..8).map(quarter).collect();
-        let back: Vec<Bezier> = curve.iter().rev().map(Bezier::reversed).collect();
-        for wrong in [&without, &twice, &back] {
-            assert!(1.0 < follow(wrong, &curve, 1e-3).unwrap().distance);
-        }
-    }
-
-    #[test]
-    fn chords_of_a_circle_are_off_by_their_sagitta() {
-        let curve: Vec<Bezier> = (0..4).map(quarter).collect();
-        let places: Vec<Position> =
-            curve.iter().flat_map(|arc| (0..16).map(|i| arc.eval(f64::from(i) / 16.0))).collect();
-        let line = |i: usize| Bezier::line(places[i], places[(i + 1) % 64]);
-        let path: Vec<Bezier> = (0..64).map(line).collect();
-        let sag = (0..64).fold(0.0, |most, i| {
-            let half = 0.5 * distance(&places[i], &places[(i + 1) % 64]);
-            f64::max(most, 10.0 - (100.0 - half * half).sqrt())
-        });
-        let found = follow(&path, &curve, 1e-3).unwrap();
-        assert!(sag <= found.distance && found.distance < 1.03 * sag + 2e-6, "{sag} {found:?}");
-    }
-}
+mod tests;

@@ -26,6 +26,7 @@ pub mod bernstein;
 pub mod bezier;
 pub mod chain;
 pub mod deviation;
+pub mod direction;
 pub mod elementary;
 pub mod expr;
 pub mod fit;

@@ -72,6 +72,17 @@ pub const KEYS: &[Key] = &[
         ],
     ),
     Key::table(
+        "orientation",
+        &[
+            Key::value("digits"),
+            Key::value("tolerance"),
+            Key::value("turn"),
+            Key::value("second_curve"),
+            Key::value("length"),
+            Key::value("safe_height"),
+        ],
+    ),
+    Key::table(
         "program",
         &[
             Key::value("header"),
@@ -86,6 +97,8 @@ pub const KEYS: &[Key] = &[
             Key::value("stop"),
             Key::value("optional_stop"),
             Key::value("dwell"),
+            Key::value("tip_control"),
+            Key::value("tip_control_end"),
             Key::value("shift"),
             Key::value("footer"),
             Key::value("subprograms"),
@@ -131,6 +144,8 @@ pub(super) struct File {
     pub(super) parameter: Option<ParameterFile>,
     /// What its splines take.
     pub(super) spline: Option<SplineFile>,
+    /// How the direction of the tool is stated in five axes.
+    pub(super) orientation: Option<OrientationFile>,
     /// The lines round a program.
     pub(super) program: Option<ProgramFile>,
 }
@@ -287,6 +302,30 @@ pub(super) struct SplineFile {
     pub(super) end: Option<Spanned<String>>,
 }
 
+/// How the direction of the tool is stated in five axes, and how the control turns it.
+#[derive(Deserialize, JsonSchema, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OrientationFile {
+    /// Decimals of a component of the direction, at most 9.
+    #[schemars(with = "Option<u8>")]
+    pub(super) digits: Option<Spanned<u8>>,
+    /// How far the direction may be from the one that was asked for, degrees.
+    #[schemars(with = "Option<f64>")]
+    pub(super) tolerance: Option<Spanned<f64>>,
+    /// How the control turns the tool between two directions. great-circle: in the plane of both; tilt: the rotary axes go evenly, C about Z and a tilt against Z.
+    #[schemars(with = "Option<String>", extend("enum" = ["great-circle", "tilt"]))]
+    pub(super) turn: Option<Spanned<String>>,
+    /// Whether spline blocks take a second curve of a point of the tool: XH YH ZH of Sinumerik.
+    #[schemars(with = "Option<bool>")]
+    pub(super) second_curve: Option<Spanned<bool>>,
+    /// How far that point is from the tip where the input does not say, mm.
+    #[schemars(with = "Option<f64>")]
+    pub(super) length: Option<Spanned<f64>>,
+    /// The height of the tip at which the tool may turn before it goes to the work, mm. Without it the greatest Z of the program.
+    #[schemars(with = "Option<f64>")]
+    pub(super) safe_height: Option<Spanned<f64>>,
+}
+
 /// The lines round a program. {name}, {tool} and {rpm} are filled in.
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
@@ -326,6 +365,12 @@ pub(super) struct ProgramFile {
     /// A dwell of {seconds}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) dwell: Option<Vec<Spanned<String>>>,
+    /// What leads the tip of the tool in five axes; {tool}.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) tip_control: Option<Vec<Spanned<String>>>,
+    /// What ends that.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) tip_control_end: Option<Vec<Spanned<String>>>,
     /// A work offset; {words}: the axis words. A line with {i} stands once for each axis, {i} counting from 1.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) shift: Option<Vec<Spanned<String>>>,

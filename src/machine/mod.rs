@@ -15,7 +15,10 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
 pub use keys::{KEYS, schema};
-pub use parts::{AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Parameters, RotaryFeed, Spline, Text};
+pub use parts::{
+    AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Orientation, Parameters, RotaryFeed, Spline, Text,
+    Turn,
+};
 
 /// The machines that are built in, with their files.
 pub const BUILT_IN: &[(&str, &str)] = &[
@@ -55,12 +58,27 @@ impl Machine {
         let mut digits = [0; MAX_AXES];
         for (i, (axis, kind)) in self.axes.as_slice().iter().enumerate() {
             let usual = match kind {
-                Kind::Linear | Kind::Direction => self.digits.linear,
+                Kind::Linear => self.digits.linear,
+                Kind::Direction => self.orientation.digits,
                 Kind::Rotary => self.digits.rotary,
             };
             digits[i] = self.limits(*axis).digits.unwrap_or(usual);
         }
         digits
+    }
+
+    /// The machine as a program of its own wants it: with a direction of the tool where the program leads the tip.
+    #[must_use]
+    pub fn for_program(self, text: &str) -> Machine {
+        let leads = |line: &str| {
+            let body = line.trim_start().trim_start_matches('N');
+            let body = body.trim_start_matches(|c: char| c.is_ascii_digit()).trim();
+            self.frame.tip_control.first().is_some_and(|template| template.matched(body).is_some())
+        };
+        let tip = ["X", "Y", "Z"].iter().enumerate().all(|(i, name)| {
+            i < self.axes.count() && self.axes.name(i).as_str() == *name && self.axes.kind(i) == Kind::Linear
+        });
+        if tip && text.lines().any(leads) { Machine { axes: Axes::with_direction(), ..self } } else { self }
     }
 
     /// The machine with these axes only, in this order; the program names no others, so they rest.
@@ -69,6 +87,19 @@ impl Machine {
     /// The machine lacks one of them, or counts it as another kind.
     pub fn with_axes(&self, axes: &Axes) -> Result<Machine, Diagnostics> {
         for (axis, kind) in axes.as_slice() {
+            if *kind == Kind::Direction {
+                if self.frame.tip_control.is_empty() {
+                    return Err(Diagnostic::refusal(
+                        "five-axes",
+                        format!("machine `{}` has no lines that lead the tip of a tilted tool", self.name),
+                    )
+                    .hint(
+                        "state them under [program]: tip_control = [\"TRAORI\"] or what the control calls it",
+                    )
+                    .into());
+                }
+                continue;
+            }
             let own = self.axes.index_of(*axis).map(|i| self.axes.kind(i));
             if own != Some(*kind) {
                 let what = match kind {
@@ -91,7 +122,12 @@ impl Machine {
     pub fn reversed(&self) -> [bool; MAX_AXES] {
         let mut reversed = [false; MAX_AXES];
         for (i, (axis, _)) in self.axes.as_slice().iter().enumerate() {
-            reversed[i] = self.limits(*axis).reversed;
+            // The components of a direction are counted as the axes that they lie along.
+            let along = match self.axes.direction().and_then(|first| i.checked_sub(first)) {
+                Some(component) => self.axes.name(component),
+                None => *axis,
+            };
+            reversed[i] = self.limits(along).reversed;
         }
         reversed
     }
@@ -113,9 +149,15 @@ impl Machine {
         linear.map(|(axis, _)| axis.as_str()).collect::<Vec<_>>().join(",")
     }
 
+    /// Whether spline blocks may move an axis.
+    pub fn splines_move(&self, axis: Axis) -> bool {
+        let direction = Axes::with_direction().as_slice()[3..].iter().any(|(own, _)| *own == axis);
+        if direction { self.orientation.second_curve } else { self.spline.axes.contains(&axis) }
+    }
+
     /// The axes that spline blocks may not move, of those given.
     pub fn axes_without_spline(&self, moving: &[Axis]) -> Vec<Axis> {
-        moving.iter().copied().filter(|axis| !self.spline.axes.contains(axis)).collect()
+        moving.iter().copied().filter(|axis| !self.splines_move(*axis)).collect()
     }
 }
 

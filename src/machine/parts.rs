@@ -42,8 +42,37 @@ pub struct Machine {
     pub parameters: Parameters,
     /// What its splines take.
     pub spline: Spline,
+    /// How the direction of the tool is stated and turned.
+    pub orientation: Orientation,
     /// The lines round a program.
     pub frame: Frame,
+}
+
+/// How the direction of the tool is stated in five axes, and how the control turns it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// Decimals of a component.
+    pub digits: u8,
+    /// How far the direction may be from the one that was asked for, degrees.
+    pub tolerance: f64,
+    /// How the control turns the tool between two directions.
+    pub turn: Turn,
+    /// Whether spline blocks take a second curve of a point of the tool, XH YH ZH.
+    pub second_curve: bool,
+    /// How far that point is from the tip where the input does not say, mm.
+    pub length: f64,
+    /// The height of the tip, mm, at which the tool may turn before it goes to the work; none: the greatest Z of the
+    /// program.
+    pub safe_height: Option<f64>,
+}
+
+/// How a control turns the tool from one direction to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// In the plane of both, evenly: the great circle.
+    GreatCircle,
+    /// Both rotary axes go evenly: C about Z and a tilt against Z, as in AC and BC heads and tables.
+    Tilt,
 }
 
 /// How F counts rotary axes in a block that moves linear ones too.
@@ -218,6 +247,10 @@ pub struct Frame {
     pub optional_stop: Vec<Template>,
     /// A dwell.
     pub dwell: Vec<Template>,
+    /// What leads the tip of the tool in five axes.
+    pub tip_control: Vec<Template>,
+    /// What ends that.
+    pub tip_control_end: Vec<Template>,
     /// A work offset.
     pub shift: Vec<Template>,
     /// After the last step.
@@ -243,6 +276,8 @@ impl Frame {
             Auxiliary::Stop => &self.stop,
             Auxiliary::OptionalStop => &self.optional_stop,
             Auxiliary::Dwell(_) => &self.dwell,
+            Auxiliary::TipControl => &self.tip_control,
+            Auxiliary::TipControlEnd => &self.tip_control_end,
         }
     }
 }

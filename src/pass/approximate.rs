@@ -16,11 +16,12 @@ use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::chain::Chain;
 use crate::geom::deviation::Metric;
+use crate::geom::direction;
 use crate::geom::fit::FitError;
 use crate::geom::geometric;
 use crate::ir::{Curve, Cut, Intent, Polyline, Role, Step};
 use crate::machine::Machine;
-use crate::units::{Axes, Kind, Position};
+use crate::units::{Axes, DEGREES, Kind, Position};
 
 /// Where a curve is.
 pub struct Frame<'a> {
@@ -33,9 +34,10 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    fn metric(&self) -> Metric {
+    /// The distance that a tolerance of so many mm holds; the tool's direction holds its own at the same time.
+    pub fn metric(&self, tolerance: f64) -> Metric {
         let kinds: Vec<Kind> = self.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
-        Metric::new(&kinds, self.radius)
+        Metric::with_direction(&kinds, self.radius, tolerance * DEGREES / self.machine.orientation.tolerance)
     }
 }
 
@@ -119,13 +121,22 @@ pub fn approximate(
             return Err(Diagnostic::refusal("arc-length", message).hint("lines move all axes together"));
         }
     }
+    let first = frame.axes.direction().filter(|_| !pieces.is_empty());
+    let turns = first.is_some_and(|first| moving(&pieces).iter().any(|i| first <= *i));
+    if spline && turns && !frame.machine.orientation.second_curve {
+        let message = format!("splines of machine `{}` do not turn the tool", frame.machine.name);
+        return Err(Diagnostic::refusal("spline-direction", message).hint("--motion linear does"));
+    }
     if spline && may_be_exact && exact(curve, form, frame).is_ok() {
         return Ok(curve.clone());
     }
     let out_of_reach = |error: FitError| {
         Diagnostic::refusal("tolerance-out-of-reach", error.to_string()).hint("allow a larger tolerance")
     };
-    let metric = frame.metric();
+    // Of a direction only the angle counts: it is followed at length 1.
+    let length = first.map_or(1.0, |first| direction::length(&pieces[0].start(), first));
+    let pieces = direction::scaled(&pieces, first, 1.0 / length);
+    let metric = frame.metric(tolerance);
     let scaled: Vec<Bezier> = pieces.iter().map(|piece| metric.scaled(piece)).collect();
     let Some(chain) = Chain::new(&scaled) else {
         return Err(Diagnostic::refusal("curve-empty", "this curve has no length"));
@@ -135,11 +146,16 @@ pub fn approximate(
         for piece in &mut cubics {
             *piece = metric.unscaled(piece);
         }
-        return Ok(Curve::Polynomial(cubics));
+        return Ok(Curve::Polynomial(direction::scaled(&cubics, first.filter(|_| turns), length)));
     }
     let chords = geometric::chords(&chain, tolerance).map_err(out_of_reach)?;
-    let place = |point: &Position| metric.unscaled(&Bezier::line(*point, *point)).start();
-    let mut line = Polyline::new(pieces[0].start(), frame.axes.count());
+    let place = |point: &Position| {
+        let place = metric.unscaled(&Bezier::line(*point, *point)).start();
+        first.map_or(place, |first| direction::unit(&place, first))
+    };
+    let start = pieces[0].start();
+    let start = first.map_or(start, |first| direction::unit(&start, first));
+    let mut line = Polyline::new(start, frame.axes.count());
     for point in &chords {
         line.push(&place(point));
     }

@@ -16,10 +16,11 @@ const MOST: f64 = 1.0e6;
 /// ```text
 /// R (1 − cos(δ/2)) = 2R sin²(δ/4) ≤ R δ²/8
 /// ```
-pub fn lines(arc: &Arc, tolerance: f64) -> Polyline {
+/// `stride` is how many coordinates the program has.
+pub fn lines(arc: &Arc, stride: usize, tolerance: f64) -> Polyline {
     let delta = (8.0 * tolerance / arc.radius()).sqrt().min(LONGEST);
     let count = (arc.sweep().abs() / delta).ceil().clamp(1.0, MOST);
-    let mut line = Polyline::new(arc.start(), 3);
+    let mut line = Polyline::new(arc.start(), stride);
     for i in 1..count as usize {
         line.push(&arc.eval(i as f64 / count));
     }
@@ -45,7 +46,7 @@ mod tests {
         let arc = Arc::new(Plane::Xy, Sense::Clockwise, at(10.0, 0.0, 0.0), at(10.0, 0.0, -3.0), [0.0, 0.0])
             .unwrap();
         for tolerance in [1.0, 0.01, 0.0001] {
-            let line = lines(&arc, tolerance);
+            let line = lines(&arc, 3, tolerance);
             let count = line.count();
             let mut from = line.start;
             let mut worst = 0.0f64;

@@ -58,7 +58,7 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
         };
         for axis in moved {
             let name = machine.axes.name(axis);
-            if !machine.spline.axes.contains(&name) && !splines_move.contains(&name) {
+            if !machine.splines_move(name) && !splines_move.contains(&name) {
                 splines_move.push(name);
             }
         }

@@ -68,7 +68,11 @@ pub fn choose(
                 .hint(format!("set [axis.{axis}] kind = \"linear\" if the axis counts on")),
         );
     }
-    if !blocked.is_empty() && !straight {
+    let turned = intent.program.axes.direction().map(|first| intent.program.axes.name(first + 2));
+    if !straight && turned.is_some_and(|axis| !machine.splines_move(axis)) {
+        let message = format!("written as lines: splines of machine `{}` do not turn the tool", machine.name);
+        warnings.push(Diagnostic::warning("spline-direction", message));
+    } else if !blocked.is_empty() && !straight {
         let names: Vec<&str> = blocked.iter().map(Axis::as_str).collect();
         let names = names.join(", ");
         warnings.push(

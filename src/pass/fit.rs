@@ -3,17 +3,19 @@
 //! The intent stays the lines: what was made of them is compared with them in the end.
 
 use crate::geom::bezier::Bezier;
-use crate::geom::deviation::Metric;
+use crate::geom::direction;
 use crate::geom::smooth;
 use crate::ir::{Curve, Cut, Intent, Role, Step};
-use crate::units::{Kind, Position};
+use crate::machine::Machine;
+use crate::pass::approximate::Frame;
+use crate::units::Position;
 
 /// The intent with each path of lines that is long enough as one C2 cubic B-spline, corners kept, within `tolerance` mm
 /// of its points. Approaches stay lines.
-pub fn fit(intent: &Intent, tolerance: f64) -> Intent {
+pub fn fit(intent: &Intent, machine: &Machine, tolerance: f64) -> Intent {
     let mut fitted = intent.clone();
-    let kinds: Vec<Kind> = intent.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
-    let metric = Metric::new(&kinds, intent.radius());
+    let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
+    let metric = frame.metric(tolerance);
     let scaled = |p: &Position| metric.scaled(&Bezier::line(*p, *p)).start();
     let unscaled = |p: &Position| metric.unscaled(&Bezier::line(*p, *p)).start();
     for located in &mut fitted.program.steps {
@@ -22,7 +24,16 @@ pub fn fit(intent: &Intent, tolerance: f64) -> Intent {
         let points: Vec<Position> =
             std::iter::once(line.start).chain(line.points()).map(|p| scaled(&p)).collect();
         if let Some(spline) = smooth::spline(&points, tolerance) {
-            *curve = Curve::Nurbs(spline.mapped(unscaled));
+            let mut spline = spline.mapped(unscaled);
+            if let Some(first) = frame.axes.direction() {
+                // The second curve runs so far from the tip.
+                let long = |p: &Position| {
+                    direction::scaled(&[Bezier::line(*p, *p)], Some(first), machine.orientation.length)[0]
+                        .start()
+                };
+                spline = spline.mapped(long);
+            }
+            *curve = Curve::Nurbs(spline);
         }
     }
     fitted

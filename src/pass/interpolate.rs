@@ -64,10 +64,14 @@ pub fn interpolate(
                 }));
             }
             Step::Cut(Cut { feed, role, curve: curve @ Curve::Arc(arc) }) => {
-                let curve = if (machine.dialect.takes_arc)(arc.plane(), arc.is_helix()) {
+                let axes = &intent.program.axes;
+                // What an arc is while the tip is led no page says.
+                let taken =
+                    axes.direction().is_none() && (machine.dialect.takes_arc)(arc.plane(), arc.is_helix());
+                let curve = if taken {
                     curve.clone()
                 } else {
-                    Curve::Lines(super::arcs::lines(arc, tolerance))
+                    Curve::Lines(super::arcs::lines(arc, axes.count(), tolerance))
                 };
                 let step = Step::Cut(Cut { feed: *feed, role: *role, curve });
                 steps.push(Located { step, span: located.span });

@@ -152,6 +152,30 @@ impl Quantiser<'_> {
         Ok(start)
     }
 
+    /// Where a curve starts: its direction in its own length, where it turns the tool, and otherwise as it is.
+    fn curve_start(&self, meant: &[f64; MAX_AXES], turns: bool) -> Result<Units, Unwritable> {
+        let mut start = self.start(meant)?;
+        if let Some(first) = self.machine.axes.direction().filter(|_| turns) {
+            start[first..first + 3].copy_from_slice(&self.point(meant)?[first..first + 3]);
+        }
+        Ok(start)
+    }
+
+    /// The end of a piece that does not turn the tool: the tool has the direction that it had.
+    fn unturned(&self, mut point: Units, start: &Units, turns: bool) -> Units {
+        if let Some(first) = self.machine.axes.direction().filter(|_| !turns) {
+            point[first..first + 3].copy_from_slice(&start[first..first + 3]);
+        }
+        point
+    }
+
+    /// Whether some of these places differ in the tool's direction.
+    fn turns<'p>(&self, mut places: impl Iterator<Item = &'p [f64; MAX_AXES]>) -> bool {
+        let Some(first) = self.machine.axes.direction() else { return false };
+        let Some(start) = places.next() else { return false };
+        places.any(|place| place[first..first + 3] != start[first..first + 3])
+    }
+
     fn arrive(&mut self, point: &Units) {
         for i in 0..self.machine.axes.count() {
             self.position[i] = Some(point[i]);
@@ -248,11 +272,12 @@ impl Quantiser<'_> {
     }
 
     fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {
-        let start = self.start(&pieces.first().ok_or(Unwritable)?.start())?;
+        let turns = self.turns(pieces.iter().flat_map(Bezier::control_points));
+        let start = self.curve_start(&pieces.first().ok_or(Unwritable)?.start(), turns)?;
         let mut from = start;
         let mut blocks = Vec::with_capacity(pieces.len());
         for piece in pieces {
-            let end = self.point(&piece.end())?;
+            let end = self.unturned(self.point(&piece.end())?, &start, turns);
             if !piece.is_polynomial() {
                 blocks.push(rational::block(self, piece, &end)?);
                 from = end;
@@ -320,10 +345,11 @@ impl Quantiser<'_> {
     }
 
     fn nurbs(&mut self, nurbs: &Nurbs) -> Result<Written, Unwritable> {
-        let start = self.start(&nurbs.points()[0])?;
+        let turns = self.turns(nurbs.points().iter());
+        let start = self.curve_start(&nurbs.points()[0], turns)?;
         let mut points = vec![start];
         for point in &nurbs.points()[1..] {
-            points.push(self.point(point)?);
+            points.push(self.unturned(self.point(point)?, &start, turns));
         }
         let knot_digits = self.machine.digits.knot;
         let knots = nurbs

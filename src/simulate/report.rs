@@ -177,8 +177,10 @@ impl Summary {
         let _ = writeln!(text, "  chord error   {}", self.chord_error.told(&chord));
         for (figures, (_, kind)) in self.axes.iter().zip(axes.as_slice()) {
             let unit = match kind {
-                Kind::Linear | Kind::Direction => "mm",
+                Kind::Linear => "mm",
                 Kind::Rotary => "degrees",
+                // What the machine's axes do to turn the tool nobody knows here.
+                Kind::Direction => continue,
             };
             let told =
                 |worst: &Worst, per: &str| worst.told(&format!("{:.4} {unit}/{per}", worst.value + 0.0));

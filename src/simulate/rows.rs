@@ -2,6 +2,7 @@
 //! axes there are, in full precision.
 
 use super::Row;
+use crate::geom::direction;
 use crate::units::{Axes, Kind};
 
 /// How rows are written.
@@ -18,6 +19,8 @@ pub struct Writer {
     format: Format,
     names: Vec<String>,
     axes: usize,
+    /// The first component of the tool's direction, which is told at length 1.
+    direction: Option<usize>,
     buffer: zmij::Buffer,
     first: bool,
 }
@@ -33,7 +36,8 @@ impl Writer {
             });
         }
         names.extend(["chord", "feed_error", "chord_error"].map(str::to_owned));
-        Writer { format, names, axes: axes.count(), buffer: zmij::Buffer::new(), first: true }
+        let direction = axes.direction();
+        Writer { format, names, axes: axes.count(), direction, buffer: zmij::Buffer::new(), first: true }
     }
 
     /// What stands before the rows.
@@ -54,7 +58,8 @@ impl Writer {
 
     /// Adds one row to a text.
     pub fn row(&mut self, row: &Row, text: &mut String) {
-        let values = [row.t, row.u].into_iter().chain(row.at[..self.axes].iter().copied()).chain([
+        let at = self.direction.map_or(row.at, |first| direction::unit(&row.at, first));
+        let values = [row.t, row.u].into_iter().chain(at[..self.axes].iter().copied()).chain([
             row.chord,
             row.feed_error,
             row.chord_error,

@@ -89,6 +89,8 @@ impl Cursor<'_> {
             Auxiliary::Stop => "a stop of the program".to_owned(),
             Auxiliary::OptionalStop => "an optional stop".to_owned(),
             Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
+            Auxiliary::TipControl => "that the tip is led".to_owned(),
+            Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
         };
         let rounded = asked.try_map(|seconds| Decimal::round(seconds, digits));
         self.meet(&what, |step| matches!(step, Step::Auxiliary(read) if Some(*read) == rounded))

@@ -10,7 +10,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric};
-use crate::geom::follow::follow;
+use crate::geom::direction;
+use crate::geom::follow::follow_turning;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{Curve, Polyline, Units, Written, WrittenPoints};
 use crate::machine::Machine;
@@ -72,6 +73,12 @@ fn minutes(path: &[Bezier], asked: &Asked<'_>, axes: &Axes) -> f64 {
     path.iter().map(|piece| counted_length(piece, axes, asked.machine, asked.radius)).sum::<f64>() / feed
 }
 
+/// Pieces whose directions start with length 1.
+fn at_unit_length(pieces: &[Bezier], first: usize) -> Vec<Bezier> {
+    let length = pieces.first().map_or(1.0, |piece| direction::length(&piece.start(), first));
+    direction::scaled(pieces, Some(first), 1.0 / length)
+}
+
 impl Cursor<'_> {
     /// Meets the path of a curve.
     pub(super) fn curve(&mut self, asked: &Asked<'_>, written: &Written) -> Result<Found, Diagnostics> {
@@ -85,8 +92,9 @@ impl Cursor<'_> {
             return Err(self.differs("not-comparable", "only the control knows this curve".to_owned()));
         };
         let (path, blocks) = self.path(written, &last.end(), found.cutting_length)?;
-        let kinds: Vec<Kind> = self.decimals.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
-        let metric = Metric::new(&kinds, asked.radius);
+        let axes = self.decimals.program.axes;
+        let frame = Frame { axes: &axes, machine: asked.machine, radius: asked.radius };
+        let metric = frame.metric(asked.tolerance);
         // Knots that were inserted cut the curve where they cut the path.
         let pieces = match (asked.curve, written) {
             (Curve::Nurbs(curve), Written::Nurbs(nurbs)) => {
@@ -95,9 +103,41 @@ impl Cursor<'_> {
             (Curve::Nurbs(_) | Curve::Lines(_) | Curve::Arc(_) | Curve::Polynomial(_), _)
             | (Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_), _) => pieces,
         };
+        let turning = axes.direction();
+        let (path, pieces) = match turning {
+            Some(first) => (at_unit_length(&path, first), at_unit_length(&pieces, first)),
+            None => (path, pieces),
+        };
         let scaled = |pieces: &[Bezier]| pieces.iter().map(|piece| metric.scaled(piece)).collect::<Vec<_>>();
-        let followed = follow(&scaled(&path), &scaled(&pieces), asked.tolerance)
+        let reach = turning.map(|first| (first, metric.reach()));
+        let followed = follow_turning(&scaled(&path), &scaled(&pieces), reach, asked.tolerance)
             .map_err(|error| self.differs("order-differs", error.to_string()))?;
+        if let Some(first) = turning {
+            let norm = |axes: &[f64]| axes.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let tip = norm(&followed.axes[..first]).min(followed.distance);
+            // On lines the control turns the tool evenly, which no chord does.
+            let pace = match written {
+                Written::Lines(_) => {
+                    let theta =
+                        path.iter().map(|piece| direction::between(&piece.start(), &piece.end(), first));
+                    direction::pace(theta.fold(0.0f64, f64::max))
+                }
+                Written::Arc(_) | Written::Polynomial(_) | Written::Nurbs(_) | Written::Through(..) => {
+                    Some(0.0)
+                }
+            };
+            let Some(pace) = pace else {
+                let message = "a straight block turns the tool by more than a radian".to_owned();
+                return Err(self.differs("direction-unknown", message));
+            };
+            let rad = followed.turn + pace;
+            found.deviation = Bound { mm: tip, rad };
+            found.path_blocks = blocks;
+            found.minutes = minutes(&path, asked, &axes);
+            self.map = self.map.max(Some(followed.map));
+            self.pass(written, blocks);
+            return Ok(found);
+        }
         let turn = |axis: usize| followed.axes[axis] * DEGREES / asked.radius / DEGREES;
         let rotary = metric.rotary().iter().enumerate().filter(|(_, rotary)| **rotary);
         let rad = rotary.fold(0.0, |most, (axis, _)| f64::max(most, turn(axis)));
@@ -105,6 +145,12 @@ impl Cursor<'_> {
         found.path_blocks = blocks;
         found.minutes = minutes(&path, asked, &self.decimals.program.axes);
         self.map = self.map.max(Some(followed.map));
+        self.pass(written, blocks);
+        Ok(found)
+    }
+
+    /// Goes on behind so many blocks of a path.
+    fn pass(&mut self, written: &Written, blocks: usize) {
         match written {
             Written::Lines(points) => {
                 self.within += blocks;
@@ -118,7 +164,6 @@ impl Cursor<'_> {
             }
             Written::Nurbs(_) | Written::Arc(_) | Written::Through(..) => self.advance(),
         }
-        Ok(found)
     }
 
     /// How far pieces are from the expressions that they stand for, given the bound in each axis.

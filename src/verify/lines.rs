@@ -3,6 +3,7 @@
 use super::{Cursor, Found};
 use crate::diagnostic::Diagnostics;
 use crate::geom::deviation::Bound;
+use crate::geom::direction;
 use crate::ir::{Polyline, Written};
 use crate::units::Kind;
 
@@ -12,7 +13,7 @@ impl Cursor<'_> {
         let Written::Lines(points) = written else {
             return Err(self.differs("step-differs", "here a straight move was asked".to_owned()));
         };
-        let mut worst = 0.0f64;
+        let (mut worst, mut turned) = (0.0f64, 0.0f64);
         let axes = self.decimals.program.axes;
         let linear: Vec<usize> = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).collect();
         let (mut from, mut length) = (asked.start, 0.0);
@@ -30,7 +31,11 @@ impl Cursor<'_> {
                 }
             }
             let read = self.decimals.position(&units);
-            worst = (0..asked.stride).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
+            let places = axes.direction().unwrap_or(asked.stride);
+            worst = (0..places).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
+            if let Some(first) = axes.direction() {
+                turned = turned.max(direction::between(&read, &point, first));
+            }
             length +=
                 linear.iter().map(|i| (point[*i] - from[*i]) * (point[*i] - from[*i])).sum::<f64>().sqrt();
             from = point;
@@ -38,7 +43,7 @@ impl Cursor<'_> {
         let count = asked.count();
         self.leave(points);
         Ok(Found {
-            deviation: Bound { mm: worst, rad: 0.0 },
+            deviation: Bound { mm: worst, rad: turned },
             path_blocks: count,
             cutting_length: length,
             ..Found::new()

@@ -42,7 +42,9 @@ fn splines_that_are_none() {
     assert_eq!(header(""), "nurbs-header");
     assert_eq!(header("(D=5,F=1000,AXIS=0.0,0.0,1.0)"), "nurbs-degree");
     assert_eq!(header("(D=3,F=0,AXIS=0.0,0.0,1.0)"), "feed-range");
-    assert_eq!(header("(D=3,F=9,AXIS=0.0,1.0,0.0)"), "tool-axis-tilted");
+    assert_eq!(header("(D=3,F=9,AXIS=0.0,1.0,0.0)"), "spline-axis");
+    assert_eq!(header("(D=3,F=9,AXIS=VAR)"), "nurbs-header");
+    assert_eq!(header("(D=3,F=9,AXIS=VAR,LENGTH=0)"), "nurbs-header");
     let nx = |body: &str| error("nx", &format!("{START}NURBS/\n{body}\nFINI")).0;
     assert_eq!(nx("KNOT/0.5,1.0\nCNTRL/1,0,0"), "nurbs-counts");
     assert_eq!(

@@ -5,6 +5,7 @@
 //! | `golden` | `fixtures/apt/<case>/`: an input and every machine's program, side by side, as bytes |
 //! | `statements` | every statement of the language: read, warned or refused |
 //! | `meaning` | arcs, cycles, feeds and units by their closed forms |
+//! | `orientation` | five axes: tip and direction, second curves, damage |
 //! | `splines` | the NURBS forms of CATIA, NX and Creo |
 //! | `bad` | input that is none, and what is told |
 //! | `corpus` | real files of CAM systems, where they are there |
@@ -13,6 +14,7 @@ mod bad;
 mod corpus;
 mod golden;
 mod meaning;
+mod orientation;
 mod splines;
 mod statements;
 

@@ -127,7 +127,9 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "MULTAX", Read("")),
     ("iso", "MULTAX/ON", Read("")),
     ("iso", "TLAXIS/0,0,1", Read("")),
-    ("iso", "TLAXIS/0,0.5,0.866", Refused("tool-axis-tilted")),
+    ("iso", "TLAXIS/0,3,4", Refused("tool-axis")),
+    ("iso", "TLAXIS/0,0.6,0.8", Read("    X 1.0 Y 0.0 Z 0.0 TX 0.0 TY 0.6 TZ 0.8\n")),
+    ("iso", "RAPID\nGOTO/5,0,10,0.6,0,0.8", Read("rapid X 5 TX 0.6 TY 0 TZ 0.8\n")),
     // motion
     ("iso", "RAPID\nGOTO/5,0,10", Read("rapid X 5\n")),
     ("iso", "RAPID /\nGOTO/5,0,10\nGOTO/5,1,10", Read("rapid X 5\ncut as asked feed 100 lines")),
@@ -137,7 +139,11 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "GODLTA/1,2,-3", Read("    X 1.0 Y 2.0 Z 7.0\n")),
     ("iso", "GODLTA/-3", Read("    X 0.0 Y 0.0 Z 7.0\n")),
     ("iso", "GOTO/1,2,3,0,0,1", Read("    X 1.0 Y 2.0 Z 3.0\n")),
-    ("iso", "GOTO/1,2,3,0,1,1", Refused("tool-axis-tilted")),
+    ("iso", "GOTO/1,2,3,0,0.6,0.8", Read("    X 1.0 Y 2.0 Z 3.0 TX 0.0 TY 0.6 TZ 0.8\n")),
+    // The direction is modal: the next point keeps it.
+    ("nx", "GOTO/1,2,3,0,0.6,0.8", Read("    X 1.0 Y 0.0 Z 0.0 TX 0.0 TY 0.6 TZ 0.8\n")),
+    ("nx", "GODLTA/5", Read("    X 0.0 Y 0.0 Z 15.0\n")),
+    ("creo", "TLAXIS/0,0.6,0.8\nCIRCLE/5,0,10,0,0,1,5\nGOTO/10,0,10", Refused("arc-axis")),
     ("iso", "GOTO/1,2,3,0,0,1,7", Refused("goto-numbers")),
     ("iso", "GOTO/1,2", Refused("goto-numbers")),
     (
@@ -153,13 +159,27 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("catia", "PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,0,1))", Warned("word-left-out")),
     // splines
     ("nx", "NURBS/\nKNOT/1.0\nCNTRL/1,0,10\nCNTRL/2,0,10\nCNTRL/3,0,10", Read("nurbs of degree 3")),
-    ("catia", "BEGIN NURBS_SIEMENS(D=3,F=100,AXIS=VAR,LENGTH=55.0)", Refused("tool-axis-tilted")),
+    (
+        "catia",
+        "BEGIN NURBS_SIEMENS(D=3,F=100,AXIS=VAR,LENGTH=50.0)\nN0,XT=0,YT=0,ZT=10,XH=0,YH=0,ZH=60,DK=0,W=1\n\
+         N1,XT=1,YT=0,ZT=10,XH=1,YH=0,ZH=60,DK=0,W=1\nN2,XT=2,YT=0,ZT=10,XH=2,YH=0,ZH=60,DK=3,W=1\n\
+         N3,XT=3,YT=0,ZT=10,XH=3,YH=0,ZH=60,DK=0,W=1\nEND NURBS",
+        Read("TX 0.0 TY 0.0 TZ 50.0"),
+    ),
+    ("catia", "BEGIN NURBS_SIEMENS(D=3,F=100,AXIS=VAR)", Refused("nurbs-header")),
+    ("catia", "BEGIN NURBS_SIEMENS(D=3,F=100,AXIS=0.0,0.6,0.8)", Refused("spline-axis")),
     (
         "creo",
         "MOVNRB/M3AXIS,LENGTH,0\nMOVNRB/ON,4,8,0,4,3\nMOVNRB/1,0,0,0,0,1,1,1,1\nMOVNRB/2,0,0,10,1,0,10,2,0,10,3,0,10\nMOVNRB/OFF",
         Read("nurbs of degree 3"),
     ),
-    ("creo", "MOVNRB/5AXIS,LENGTH,50", Refused("tool-axis-tilted")),
+    (
+        "creo",
+        "MOVNRB/5AXIS,LENGTH,50\nMOVNRB/ON,4,8,0,4,3\nMOVNRB/1,0,0,0,0,1,1,1,1\n\
+         MOVNRB/2,0,0,10,1,0,10,2,0,10,3,0,10\nMOVNRB/3,0,0,60,1,0,60,2,0,60,3,0,60\nMOVNRB/OFF",
+        Read("TX 0.0 TY 0.0 TZ 50.0"),
+    ),
+    ("creo", "MOVNRB/5AXIS", Refused("nurbs-header")),
     // cycles
     (
         "creo",
@@ -221,7 +241,7 @@ fn lenient_leaves_out_what_nobody_knows() {
         assert_eq!(intent.warnings.0.len(), 1, "{:?}", intent.warnings);
     }
     // What is understood and not compiled is refused all the same.
-    for statement in ["CUTCOM/LEFT", "ROTABL/90", "GOTO/1,2,3,0,1,1"] {
+    for statement in ["CUTCOM/LEFT", "ROTABL/90"] {
         assert!(intent_as("iso", &format!("{HEAD}{statement}\n{TAIL}"), true).is_err(), "{statement}");
     }
 }

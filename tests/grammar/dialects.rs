@@ -62,7 +62,7 @@ fn sentences_are_read() {
         // Digits of an exponent are not repeated: 1EX9999 is a number that nothing can hold.
         let mut generator = Generator::new(recogniser, 1, &["exponent"]);
         let mut sound = 0;
-        for _ in 0..800 {
+        for _ in 0..1600 {
             let line = generator.sentence("line");
             let errors = errors(&line, &machine);
             let lexical: Vec<_> = errors.iter().filter(|id| LEXICAL.contains(id)).collect();
@@ -83,7 +83,8 @@ fn sentences_are_read() {
 const WORDS: &str = "POLY BSPLINE ASPLINE CSPLINE UPATH SPATH BAUTO BNAT BTAN EAUTO ENAT ETAN COMPOF COMPON SOFT BRISK \
     TRAFOOF TRAORI FFWON STOPRE G1X1 G01 SD=1 SD=2 SD=3 SD=4 PL=1 PW=1 PL1 SPLINEPATH(1,X) SPLINEPATH(2,X) FGROUP(X) \
     FGROUP(A) FGROUP() K1X+1 K3A1E2 K4X+1 FMAX FAUTO R0 RL RR M3 M99 X+1 IX+1 X+Q1 X1,5 x1 g1 E1 (a) (a /G1 % %1 ; ;a * *a \
-    ~ N N1 1 ? ä F=R1 F=Q1 A=DC(5) A=DC(5 X=DC(5) R1=5 R=5 FQ1 F#1 F#a #1=5 #=5 IA+5";
+    ~ N N1 1 ? ä F=R1 F=Q1 A=DC(5) A=DC(5 X=DC(5) R1=5 R=5 FQ1 F#1 F#a #1=5 #=5 IA+5 A3=1 B3=1 C3=1 D3=1 XH=1 YH=1 \
+    UH=1 PO[XH]=(1,2) XH=PO(1) ORICURVE ORIVECT ORIAXES ORIPATH TX+1 LN";
 
 /// Blocks of one word, of every letter and every G code.
 fn blocks_of_one_word(dialect: &str) -> Vec<String> {

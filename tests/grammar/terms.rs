@@ -47,6 +47,8 @@ impl Terms {
             &frame.stop,
             &frame.optional_stop,
             &frame.dwell,
+            &frame.tip_control,
+            &frame.tip_control_end,
             &frame.shift,
         ];
         let all = [&frame.header, &frame.footer, &frame.close].into_iter().chain(calls);

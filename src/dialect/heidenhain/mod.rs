@@ -83,6 +83,8 @@ pub const DIALECT: Dialect = Dialect {
     round: Round::Step,
     // C lies in the working plane; a helix is polar, with an angle that rounds.
     takes_arc: |plane, helix| plane == Plane::Xy && !helix,
+    direction: ["TX", "TY", "TZ"],
+    second_curve: false,
     write: write::write,
     read: read::read,
 };

@@ -17,6 +17,7 @@
 //! δ = 0; elsewhere a warning names the greatest.
 
 mod arcs;
+mod closing;
 
 use super::words::{Word, cut, is_continuation, word};
 use crate::decimal::{Decimal, Spelling};
@@ -66,6 +67,8 @@ struct Block {
     coefficient_places: [(usize, usize); MAX_AXES],
     feed: Option<Decimal>,
     rapid: bool,
+    /// TX TY TZ.
+    direction: [Option<Decimal>; 3],
     spline: bool,
     /// DR of C.
     rotation: Option<Sense>,
@@ -81,6 +84,7 @@ impl Block {
             coefficient_places: [(0, 0); MAX_AXES],
             feed: None,
             rapid: false,
+            direction: [None; 3],
             spline,
             rotation: None,
         }
@@ -157,7 +161,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             continue;
         }
         match keyword {
-            "L" | "SPL" | "CC" | "C" => reader.block(keyword, body, start, &line, span),
+            "L" | "LN" | "SPL" | "CC" | "C" => reader.block(keyword, body, start, &line, span),
             _ => match body.strip_prefix(';').or_else(|| body.strip_prefix('*')) {
                 Some(comment) => reader.assembler.step(Step::Comment(comment.trim().to_owned()), span),
                 None => reader.unknown(body, start),
@@ -188,7 +192,7 @@ impl<'t> Reader<'t, '_> {
     ///
     /// `block = "L", [ blank, words ], { "~", end_of_line, words }
     ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }
-    ///     | ( "CC" | "C" ), [ blank, words ], { "~", end_of_line, words }`
+    ///     | ( "LN" | "CC" | "C" ), [ blank, words ], { "~", end_of_line, words }`
     fn block(&mut self, keyword: &str, body: &'t str, start: usize, first: &Line<'t>, mut span: Span) {
         let mut block = Block::new(keyword == "SPL");
         let known = self.assembler.diagnostics.0.len();
@@ -219,6 +223,18 @@ impl<'t> Reader<'t, '_> {
             match keyword {
                 "CC" => self.center(&block, head),
                 "C" => self.arc(&block, first.number, head, span),
+                "LN" => {
+                    if let Some(named) = self.assembler.direction(block.direction, head.clone()) {
+                        for (axis, units) in named {
+                            block.named[block.count] = (axis, units);
+                            block.count += 1;
+                        }
+                        self.meant(&block, first.number, head, span);
+                    }
+                }
+                _ if block.direction.iter().any(Option::is_some) => {
+                    self.assembler.error("direction", "TX TY TZ belong to LN", head);
+                }
                 _ => self.meant(&block, first.number, head, span),
             }
         }
@@ -277,6 +293,12 @@ impl<'t> Reader<'t, '_> {
             Word::FeedParameter(number) => {
                 if let Some(value) = self.assembler.parameter(number, range.clone()) {
                     self.word(&Word::Feed(value), range, block);
+                }
+            }
+            Word::Direction(i, value) => {
+                if block.direction[i].replace(value).is_some() {
+                    let message = "a component of the direction stands twice in this block";
+                    self.assembler.error("axis-twice", message, range);
                 }
             }
             Word::Coefficient(power, letter, value) => self.coefficient(power, letter, value, range, block),
@@ -375,6 +397,11 @@ impl<'t> Reader<'t, '_> {
         let digits = |from: usize| from < bytes.len() && bytes[from..].iter().all(u8::is_ascii_digit);
         let (id, message) = if text == "RL" || text == "RR" {
             ("compensation", format!("radius compensation {text} is not read: the path would be another one"))
+        } else if let [b'N', b'X'..=b'Z', ..] = bytes {
+            (
+                "compensation",
+                "normals of the surface compensate the radius: the path would be another one".to_owned(),
+            )
         } else if bytes.first() == Some(&b'M') && digits(1) {
             ("m-function", format!("{text} is not read in a block of moves"))
         } else if bytes.contains(&b'Q') {
@@ -409,7 +436,7 @@ impl<'t> Reader<'t, '_> {
         self.assembler.diagnostics.push(
             Diagnostic::error("block-unknown", message)
                 .at(span, "")
-                .hint("L, C, CC, SPL, comments and the lines of the machine file are read"),
+                .hint("L, LN, C, CC, SPL, comments and the lines of the machine file are read"),
         );
         let mut goes_on = body.ends_with('~');
         while goes_on && let Some(next) = self.lines.next() {
@@ -509,53 +536,6 @@ impl<'t> Reader<'t, '_> {
             });
             run.span.end = span.end;
         }
-    }
-
-    fn coefficients_missing(&mut self, axis: usize, k: &[Option<Decimal>; 3], range: Range<usize>) {
-        let name = self.assembler.machine.axes.name(axis);
-        let missing: Vec<String> =
-            (0..3).rev().filter(|i| k[*i].is_none()).map(|i| format!("K{}{name}", i + 1)).collect();
-        let span = self.assembler.span(range);
-        let verb = if missing.len() == 1 { "is" } else { "are" };
-        self.assembler.diagnostics.push(
-            Diagnostic::error("coefficients-missing", format!("{} {verb} missing", missing.join(", ")))
-                .at(span, "")
-                .hint("in SPL every coordinate has K3, K2 and K1, zeros too"),
-        );
-    }
-
-    /// Whether a block starts where the tool is, axis by axis: stated by the coefficients, and the tool's place.
-    fn closes(&mut self, axes: &[(usize, Decimal, Decimal)], head: Range<usize>, span: Span) -> bool {
-        let mut worst = Decimal::ZERO;
-        let (mut stated_at, mut tool_at) = (String::new(), String::new());
-        for (axis, stated, tool) in axes {
-            let Some(gap) = stated.minus(*tool).and_then(magnitude) else {
-                self.assembler.error("coefficient-range", "the numbers of this block are too large", head);
-                return false;
-            };
-            if gap.compare(worst).is_gt() {
-                worst = gap;
-            }
-            if gap.compare(start_tolerance()).is_gt() {
-                let name = self.assembler.machine.axes.name(*axis);
-                for (text, value) in [(&mut stated_at, stated), (&mut tool_at, tool)] {
-                    text.extend([" ", name.as_str(), &signed(*value)]);
-                }
-            }
-        }
-        if worst.compare(start_tolerance()).is_gt() {
-            let head = self.assembler.span(head);
-            self.assembler.diagnostics.push(
-                Diagnostic::error("start-mismatch", "spline does not start where the tool is")
-                    .at(head, format!("starts at{stated_at}, the tool is at{tool_at}: {worst} apart"))
-                    .hint(format!("the control accepts {} mm", start_tolerance())),
-            );
-            return false;
-        }
-        if !worst.is_zero() && self.gap.is_none_or(|(known, _)| known.compare(worst).is_lt()) {
-            self.gap = Some((worst, span));
-        }
-        true
     }
 
     /// Ends a run of SPL blocks: it becomes a cut.

@@ -25,6 +25,8 @@ pub(super) enum Word<'t> {
     FeedParameter(u32),
     /// `K3X-4.688E-002`: which K, its axis, and its value where it can be held
     Coefficient(usize, u8, Option<Decimal>),
+    /// `TX+0.1`: which component of the tool's direction
+    Direction(usize, Decimal),
     /// `F200`
     Feed(Decimal),
     /// `FMAX`
@@ -37,11 +39,29 @@ pub(super) enum Word<'t> {
     Other(&'t str),
 }
 
-/// `word = coordinate | coefficient | feed | feed_parameter | rapid | step | compensation | rotation`, or [`other`]
+/// `word = coordinate | coefficient | direction | feed | feed_parameter | rapid | step | compensation | rotation`, or [`other`]
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((coordinate, coefficient, feed, feed_parameter, rapid, step, compensation, rotation, other))
-        .parse(input)
+    alt((
+        coordinate,
+        coefficient,
+        direction,
+        feed,
+        feed_parameter,
+        rapid,
+        step,
+        compensation,
+        rotation,
+        other,
+    ))
+    .parse(input)
+}
+
+/// `direction = "T", ( "X" | "Y" | "Z" ), number`
+fn direction(input: &str) -> IResult<&str, Word<'_>> {
+    let (rest, letter) = preceded(char('T'), one_of("XYZ")).parse(input)?;
+    let (rest, value) = number(rest)?;
+    Ok((rest, Word::Direction(letter as usize - 'X' as usize, value)))
 }
 
 /// `feed_parameter = "FQ", digits`

@@ -53,7 +53,7 @@ impl Writer<'_> {
                     self.block(&line);
                     continue;
                 }
-                Part::Tool(..) | Part::Spindle => {}
+                Part::Tool(..) | Part::Spindle | Part::TipControl(_) => {}
                 Part::Home(axis) => self.modal.lose(axis),
                 Part::Shift(shifts) => self.modal.shift(shifts),
                 Part::Remark(text) => self.remark(text),
@@ -85,11 +85,17 @@ impl Writer<'_> {
         self.modal.end();
     }
 
+    /// The word of a straight block: with the tool's direction LN.
+    fn straight(&mut self) {
+        self.modal.text(if self.modal.direction.is_some() { "LN " } else { "L " });
+    }
+
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
         self.modal.begin("");
-        self.modal.text("L ");
+        self.straight();
         self.modal.targets(targets);
-        self.modal.text("R0 FMAX");
+        // LN takes no compensation word: the vector of the tool alone compensates nothing.
+        self.modal.text(if self.modal.direction.is_some() { "FMAX" } else { "R0 FMAX" });
         self.modal.end();
     }
 
@@ -97,7 +103,7 @@ impl Writer<'_> {
         self.modal.lines(points);
         for point in points.points() {
             self.modal.begin("");
-            self.modal.text("L ");
+            self.straight();
             self.modal.moved_axes(&point, points.stride);
             self.modal.feed(feed);
             self.modal.reached(&point);

@@ -89,6 +89,8 @@ pub const MAZAK: Dialect = Dialect {
     round: Round::Place,
     // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
     takes_arc: |_, _| true,
+    direction: ["I", "J", "K"],
+    second_curve: false,
     write: write::write,
     read: read::read,
 };

@@ -5,6 +5,7 @@
 //! over. A remark in a line of its own ends no spline; where one stands inside a spline, it is read as coming after it.
 
 mod nurbs;
+mod tool;
 mod words;
 
 use super::{Offset, is_block};
@@ -162,6 +163,10 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             }
             if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
                 reader.tool_line(body, &offset);
+                if reader.assembler.begins_tip_control() {
+                    // Its lines hold the length of the tool.
+                    reader.offset_due = None;
+                }
                 // The machine's own lines may hold a work offset; another one later would be another place.
                 let mut codes =
                     body.split_whitespace().filter_map(|code| code.strip_prefix("G5")?.parse().ok());
@@ -439,6 +444,9 @@ impl Reader<'_> {
         if let Some((_, range)) = block.q.take() {
             self.error("word-unknown", "Q is read with G05.1 only", range);
         }
+        if !self.directed(&mut block, whole()) {
+            return;
+        }
         let arc = matches!(self.motion, Motion::Arc(_));
         for (name, word) in [("I", &block.i), ("J", &block.j)] {
             if let (Some((_, range)), false) = (word, arc) {
@@ -489,47 +497,6 @@ impl Reader<'_> {
         };
         if !known {
             self.error("code-refused", "only G05 P0, P1, P2, P10000 and G05.1 Q0, Q1 are read", range);
-        }
-    }
-
-    /// `length_offset = "G", { "0" }, "43", { blank }, "H", number`, after a tool call whose lines in the machine file end
-    /// with it; also with words between
-    fn length_offset(&mut self, block: &mut Block, whole: Range<usize>) {
-        let (offset, number) = (block.offset.take(), block.h.take());
-        // Due after a tool call; after that each section may call it again.
-        match (offset, number, self.offset_due.or(self.offset_again)) {
-            (Some(_), Some((h, range)), Some(tool)) => {
-                if h.units(0) != Some(i64::from(tool)) {
-                    self.error(
-                        "tool-offset",
-                        format!("the offset of tool {tool} is called here, not that of H{h}"),
-                        range,
-                    );
-                }
-                self.offset_due = None;
-                self.offset_again = None;
-                self.offset_tool = Some(tool);
-            }
-            (Some(range), _, _) => {
-                self.error("tool-offset", "G43 H is read after a tool call that asks for it", range);
-            }
-            (None, Some((_, range)), _) => self.error("word-unknown", "H is read with G43 only", range),
-            (None, None, _) => {
-                let Some(tool) = self.offset_due else { return };
-                let moves = match self.motion {
-                    Motion::None => false,
-                    Motion::Rapid => block.named().iter().any(|(axis, _)| Some(*axis) == self.z),
-                    Motion::Line | Motion::Arc(_) | Motion::Nurbs | Motion::Through => 0 < block.count,
-                };
-                if moves {
-                    self.offset_due = None;
-                    self.error(
-                        "tool-offset-missing",
-                        format!("tool {tool} moves before its `G43 H{tool}`"),
-                        whole,
-                    );
-                }
-            }
         }
     }
 

@@ -23,6 +23,7 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
         offset: &offset,
         offset_due: None,
         offset_tool: None,
+        led: false,
         through: false,
         plane: None,
     };
@@ -40,6 +41,8 @@ struct Writer<'a> {
     offset_due: Option<u32>,
     /// The tool whose length offset each section calls.
     offset_tool: Option<u32>,
+    /// Whether the tip of the tool is led.
+    led: bool,
     /// Whether the last motion is G06.1, which a comment does not end.
     through: bool,
     /// The plane that this section chose.
@@ -71,10 +74,19 @@ impl Writer<'_> {
                     self.offset_due = self.offset_tool;
                 }
                 Part::Spindle => {}
+                // The lines that lead the tip hold the length of the tool.
+                Part::TipControl(true) => {
+                    self.offset_due = None;
+                    self.led = true;
+                }
+                Part::TipControl(false) => {
+                    self.led = false;
+                    self.offset_due = self.offset_tool;
+                }
                 Part::Home(axis) => {
                     self.modal.lose(*axis);
                     self.modal.motion = None;
-                    self.offset_due = self.offset_tool;
+                    self.offset_due = self.offset_tool.filter(|_| !self.led);
                 }
                 Part::Shift(shifts) => self.modal.shift(shifts),
                 Part::Remark(text) => self.line(&format!("({text})")),
@@ -82,11 +94,11 @@ impl Writer<'_> {
                     self.line(&format!("({text})"));
                     self.modal.forget();
                     self.plane = None;
-                    self.offset_due = self.offset_tool;
+                    self.offset_due = self.offset_tool.filter(|_| !self.led);
                 }
                 Part::Body => {
                     self.modal.forget();
-                    self.offset_due = self.offset_tool;
+                    self.offset_due = self.offset_tool.filter(|_| !self.led);
                 }
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => {
@@ -104,9 +116,12 @@ impl Writer<'_> {
                 }
             }
             self.through = match &part {
-                Part::Comment(_) | Part::Remark(_) | Part::Fixed(_) | Part::Shift(_) | Part::Body => {
-                    self.through
-                }
+                Part::Comment(_)
+                | Part::Remark(_)
+                | Part::Fixed(_)
+                | Part::Shift(_)
+                | Part::Body
+                | Part::TipControl(_) => self.through,
                 Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::Rapid(_) => false,
                 Part::Cut(cut) => matches!(cut.curve, Written::Through(..)),
             };

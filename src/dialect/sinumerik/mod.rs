@@ -107,6 +107,8 @@ pub const DIALECT: Dialect = Dialect {
     round: Round::Shortest,
     // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise.
     takes_arc: |plane, _| plane == Plane::Xy,
+    direction: ["A3=", "B3=", "C3="],
+    second_curve: true,
     write: write::write,
     read: read::read,
 };

@@ -2,11 +2,14 @@
 //!
 //! A word that is not understood is an error at its place.
 
+mod orientation;
 mod path;
+mod spline;
 mod state;
 
 use super::words::{Word, word};
-use crate::decimal::{Decimal, power_of_ten};
+use super::write::SECOND;
+use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::arc;
@@ -15,14 +18,13 @@ use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{
-    COEFFICIENTS, Denominator, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenNurbs,
-    WrittenPoints, WrittenPolynomial,
+    COEFFICIENTS, Denominator, PolynomialBlock, Step, ThroughKind, Units, Written, WrittenPoints,
+    WrittenPolynomial,
 };
 use crate::machine::Machine;
 use crate::pass::check::moving;
 use crate::source::{SourceId, Span};
 use crate::units::{Kind, MAX_AXES};
-use crate::verify::to_nurbs;
 use path::{denominator_fault, linear_in_parameter};
 use std::ops::Range;
 
@@ -56,6 +58,10 @@ struct Block {
     pw: Option<Decimal>,
     /// I J K.
     center: [Option<Decimal>; 3],
+    /// A3 B3 C3.
+    direction: [Option<Decimal>; 3],
+    /// XH YH ZH, and the coefficients of PO[XH] and so on.
+    second: [Option<(Decimal, [Decimal; COEFFICIENTS])>; 3],
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -87,6 +93,8 @@ struct Reader<'m> {
     upath: bool,
     /// The axes that SPLINEPATH named last.
     splinepath: Vec<usize>,
+    /// Whether a second curve leads the tool's direction, ORICURVE.
+    second: bool,
     run: Option<Run>,
 }
 
@@ -101,6 +109,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         degree: 3,
         upath: false,
         splinepath: Vec::new(),
+        second: false,
         run: None,
     };
     for line in lines {
@@ -134,6 +143,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
                 reader.flush();
             }
             if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
+                // Lines of the machine file that lead the tip also say how the tool turns.
+                reader.second &= !reader.assembler.begins_tip_control();
                 continue;
             }
         }
@@ -180,6 +191,8 @@ impl Reader<'_> {
             pl: None,
             pw: None,
             center: [None; 3],
+            direction: [None; 3],
+            second: [None; 3],
             feed: None,
             starts_spline: false,
         };
@@ -204,6 +217,9 @@ impl Reader<'_> {
         }
         if let Some(feed) = block.feed {
             self.set_feed(feed, span);
+        }
+        if !self.directed(&mut block, span) {
+            return;
         }
         self.moved(&block, line, span);
     }
@@ -245,6 +261,10 @@ impl Reader<'_> {
                     }
                     block.has_polynomial = true;
                     return;
+                }
+                if SECOND.contains(&name) {
+                    block.has_polynomial = true;
+                    return self.second_point(name, &values, range, block);
                 }
                 let Some(axis) = self.assembler.axis(name) else {
                     return self.assembler.error(
@@ -325,6 +345,10 @@ impl Reader<'_> {
                     block.feed = Some(value);
                 }
             }
+            ("A3", _) => block.direction[0] = Some(value),
+            ("B3", _) => block.direction[1] = Some(value),
+            ("C3", _) => block.direction[2] = Some(value),
+            ("XH" | "YH" | "ZH", _) => self.second_point(name, &[value], range, block),
             ("PL", _) => block.pl = Some(value),
             ("PW", _) => block.pw = Some(value),
             ("SD", Some(degree @ 2..=3)) => self.degree = degree as usize,
@@ -467,90 +491,6 @@ impl Reader<'_> {
         let Some(curve) = curve else { return };
         self.path_reference(&curve, span);
         self.assembler.curve(curve, &end, span);
-    }
-
-    /// The knot vector from the distances: t₂ = 0, t_{j+2} = t_{j+1} + PL_j.
-    fn bspline(&mut self, run: Run) -> Option<WrittenNurbs> {
-        let whole = run.span.start as usize..run.span.end as usize;
-        let Run { mut points, mut lines, mut pl, mut pw, degree, .. } = run;
-        points.insert(0, run.start);
-        lines.insert(0, lines.first().copied().unwrap_or(0));
-        // A first block that repeats the first point has an empty support; its weight is that of the point.
-        let mut first_weight = None;
-        if points.len() > degree + 2
-            && points[0] == points[1]
-            && pl[0].is_zero()
-            && pl[1].is_zero()
-            && degree == 3
-        {
-            points.remove(0);
-            lines.remove(0);
-            pl.remove(0);
-            first_weight = pw.remove(0);
-        }
-        let n = points.len();
-        if n <= degree {
-            self.assembler.error(
-                "spline-too-short",
-                format!("a B-spline of degree {degree} needs at least {degree} blocks"),
-                whole,
-            );
-            return None;
-        }
-        let knot_digits =
-            pl.iter().map(|d| d.digits()).max().unwrap_or(0).max(self.assembler.machine.digits.knot);
-        let mut knots = vec![0i64; 3];
-        if run.missing_pl {
-            if pl.iter().any(|d| !d.is_zero()) {
-                self.assembler.error("pl-missing", "PL stands on some blocks of this spline only", whole);
-                return None;
-            }
-            self.assembler.diagnostics.push(
-                Diagnostic::warning(
-                    "knots-unknown",
-                    "without PL the control chooses the knots; uniform ones are taken here",
-                )
-                .at(run.span, ""),
-            );
-            let spans = n - degree;
-            knots = vec![0; degree + 1];
-            knots.extend((1..spans).map(|i| i as i64 * power_of_ten(knot_digits)));
-            knots.extend(std::iter::repeat_n(spans as i64 * power_of_ten(knot_digits), degree + 1));
-        } else {
-            for (distance, line) in pl.iter().zip(&lines[1..]) {
-                let units = distance.units(knot_digits).filter(|units| 0 <= *units);
-                let next = units.and_then(|units| knots[knots.len() - 1].checked_add(units));
-                let Some(next) = next else {
-                    self.assembler.error(
-                        "pl-range",
-                        format!("PL={distance} in line {line} is no knot distance"),
-                        whole,
-                    );
-                    return None;
-                };
-                knots.push(next);
-            }
-            let last = knots[knots.len() - 1];
-            while knots.len() < n + degree + 1 {
-                knots.push(last);
-            }
-        }
-        let weights = if pw.iter().all(Option::is_none) && first_weight.is_none() {
-            None
-        } else {
-            let one = Decimal::new(1, 0);
-            Some(
-                std::iter::once(first_weight.unwrap_or(one))
-                    .chain(pw.iter().map(|w| w.unwrap_or(one)))
-                    .collect(),
-            )
-        };
-        let nurbs = WrittenNurbs { degree, knots, knot_digits, points, weights, lines };
-        if let Err(error) = to_nurbs(&self.assembler.empty(), &nurbs) {
-            self.assembler.error("spline-unsound", error.to_string(), whole);
-            return None;
-        }
-        Some(nurbs)
     }
 
     /// A curve that moves a rotary axis needs UPATH, where the machine has it, so that all axes follow one parameter;

@@ -57,7 +57,7 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
         return failed();
     }
     let (rest, value) = number(&input[1..])?;
-    if rest.starts_with('=') {
+    if rest.trim_ascii_start().starts_with('=') {
         return failed();
     }
     Ok((rest, Word::Address(&input[..1], value)))
@@ -110,7 +110,7 @@ fn list(input: &str) -> IResult<&str, Vec<Decimal>> {
     delimited(char('('), separated_list1(char(','), item), char(')')).parse(input)
 }
 
-/// `polynomial = "PO[", [ axis ], "]", equals, list | axis, equals, "PO", list`, or another name; without an axis it is the
+/// `polynomial = "PO[", [ axis | second ], "]", equals, list | ( axis | second ), equals, "PO", list`, or another name; without an axis it is the
 /// denominator
 fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
     let old =
@@ -119,7 +119,7 @@ fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
     alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
 }
 
-/// `assignment = ( axis | "F" | "I" | "J" | "K" | "PL" | "PW" ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
+/// `assignment = ( axis | "F" | "I" | "J" | "K" | "PL" | "PW" | component | second ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
 fn assignment(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
     Ok((rest, Word::Address(name, value)))
@@ -132,7 +132,7 @@ fn call(input: &str) -> IResult<&str, Word<'_>> {
     (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
 }
 
-/// `keyword = motion | path_reference | end_condition | "COMPOF" | "SOFT" | "TRAFOOF"`, or another name
+/// `keyword = motion | path_reference | end_condition | orientation | "COMPOF" | "SOFT" | "TRAFOOF"`, or another name
 fn keyword(input: &str) -> IResult<&str, Word<'_>> {
     name.map(Word::Keyword).parse(input)
 }

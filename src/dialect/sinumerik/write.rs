@@ -5,10 +5,24 @@ use crate::dialect::arc;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
 use crate::geom::arc::Plane;
-use crate::ir::{Decimals, ThroughKind, Written, WrittenNurbs, WrittenPoints, WrittenPolynomial};
-use crate::machine::Machine;
+use crate::ir::{
+    COEFFICIENTS, Decimals, PolynomialBlock, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
+    WrittenPolynomial,
+};
+use crate::machine::{Machine, Turn};
 use crate::pass::check::{Legal, moving};
 use crate::units::Kind;
+
+/// The names of the second point's coordinates (machine data 10646).
+pub(super) const SECOND: [&str; 3] = ["XH", "YH", "ZH"];
+
+/// The word of how the tool turns between two directions.
+pub(super) fn turn_word(turn: Turn) -> &'static str {
+    match turn {
+        Turn::GreatCircle => "ORIVECT",
+        Turn::Tilt => "ORIAXES",
+    }
+}
 
 /// The text of a program.
 pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
@@ -20,6 +34,7 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
         upath: false,
         splinepath: Vec::new(),
         plane: None,
+        second: false,
     };
     writer.program();
     String::from_utf8(writer.modal.out).unwrap_or_default()
@@ -40,6 +55,8 @@ struct Writer<'a> {
     splinepath: Vec<usize>,
     /// The plane that this section chose.
     plane: Option<Plane>,
+    /// Whether a second curve leads the tool's direction, ORICURVE.
+    second: bool,
 }
 
 impl Writer<'_> {
@@ -66,6 +83,8 @@ impl Writer<'_> {
             match part {
                 Part::Fixed(line) => self.block(&line),
                 Part::Tool(..) | Part::Spindle => {}
+                // The machine's own lines say how the tool turns.
+                Part::TipControl(_) => self.second = false,
                 Part::Home(axis) => {
                     self.modal.lose(axis);
                     self.modal.motion = None;
@@ -90,13 +109,63 @@ impl Writer<'_> {
     }
 
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
+        self.lead(false);
         self.modal.begin("N");
         self.modal.motion("G0");
         self.modal.targets(targets);
         self.modal.end();
     }
 
+    /// ORICURVE, where a second curve is to lead the tool's direction, or the word that ends it.
+    fn lead(&mut self, second: bool) {
+        if self.second != second {
+            self.block(if second { "ORICURVE" } else { turn_word(self.modal.machine.orientation.turn) });
+            self.second = second;
+        }
+    }
+
+    /// Where a curve moves the tool's direction its second curve starts at a place of its own, which a straight block
+    /// states. Whether the curve does.
+    fn second_curve(&mut self, moved: &[usize], start: &Units, feed: Option<Decimal>) -> bool {
+        let Some(first) = self.modal.direction.filter(|first| moved.iter().any(|i| first <= i)) else {
+            self.lead(false);
+            return false;
+        };
+        let known = (first..first + 3).all(|i| self.modal.position[i] == Some(start[i]));
+        if !(self.second && known) {
+            self.lead(true);
+            self.modal.begin("N");
+            self.modal.motion("G1");
+            self.modal.axes(&[0, 1, 2], start);
+            self.second_point(first, start);
+            self.modal.feed(feed);
+            self.modal.reached(start);
+            self.modal.end();
+        }
+        true
+    }
+
+    /// A coordinate of the second point, as the text counts it: the tip's and the direction's.
+    fn second(&self, first: usize, i: usize, point: &Units) -> Decimal {
+        let digits = &self.decimals.digits;
+        let tip = Decimal::new(self.modal.counted(i, point[i]), digits[i]);
+        let along = Decimal::new(self.modal.counted(first + i, point[first + i]), digits[first + i]);
+        // Both have at most nine decimals and are below a million.
+        tip.plus(along).unwrap_or(tip)
+    }
+
+    /// `XH= YH= ZH=`
+    fn second_point(&mut self, first: usize, point: &Units) {
+        for (i, name) in SECOND.into_iter().enumerate() {
+            self.modal.text(name);
+            self.modal.out.push(b'=');
+            self.second(first, i, point).write(&mut self.modal.out, self.modal.spelling);
+            self.modal.gap();
+        }
+    }
+
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
+        self.lead(false);
         self.modal.lines(points);
         for point in points.points() {
             self.modal.begin("N");
@@ -138,7 +207,10 @@ impl Writer<'_> {
 
     fn polynomial(&mut self, polynomial: &WrittenPolynomial, curve: &Written, feed: Option<Decimal>) {
         self.path_reference(curve, false);
-        let moved = moving(curve);
+        let mut moved = moving(curve);
+        let second = self.second_curve(&moved, &polynomial.start, feed);
+        let first = self.modal.direction.filter(|_| second);
+        moved.retain(|i| self.modal.direction.is_none_or(|first| *i < first));
         for block in &polynomial.blocks {
             self.modal.begin("N");
             self.modal.motion("POLY");
@@ -164,6 +236,9 @@ impl Writer<'_> {
                     coefficients.iter().map(|a| self.modal.coefficient(i, *a)).collect();
                 self.coefficients(&counted);
             }
+            if let Some(first) = first {
+                self.second_polynomial(first, block);
+            }
             if let Some(denominator) = &block.denominator {
                 self.modal.text("PO[]=(");
                 denominator.end.write(&mut self.modal.out, self.modal.spelling);
@@ -178,9 +253,29 @@ impl Writer<'_> {
         }
     }
 
+    /// `PO[XH]=(…)` and so on: end and coefficients of the tip's and the direction's added.
+    fn second_polynomial(&mut self, first: usize, block: &PolynomialBlock) {
+        for (i, name) in SECOND.into_iter().enumerate() {
+            let sum: Vec<Decimal> = (0..COEFFICIENTS)
+                .map(|k| {
+                    let own = |axis: usize| self.modal.coefficient(axis, block.coefficients[axis][k]);
+                    own(i).plus(own(first + i)).unwrap_or_default()
+                })
+                .collect();
+            self.modal.text("PO[");
+            self.modal.text(name);
+            self.modal.text("]=(");
+            self.second(first, i, &block.end).write(&mut self.modal.out, self.modal.spelling);
+            self.coefficients(used(&sum));
+        }
+    }
+
     fn nurbs(&mut self, nurbs: &WrittenNurbs, curve: &Written, feed: Option<Decimal>) {
         self.path_reference(curve, true);
-        let moved = moving(curve);
+        let mut moved = moving(curve);
+        let second = self.second_curve(&moved, &nurbs.points[0], feed);
+        let first = self.modal.direction.filter(|_| second);
+        moved.retain(|i| self.modal.direction.is_none_or(|first| *i < first));
         // A spline starts anew: two in a row would else be one.
         self.modal.motion = None;
         for (j, point) in nurbs.points.iter().enumerate().skip(1) {
@@ -192,6 +287,9 @@ impl Writer<'_> {
                 self.modal.gap();
             }
             self.modal.axes(&moved, point);
+            if let Some(first) = first {
+                self.second_point(first, point);
+            }
             self.modal.text("PL=");
             let distance = nurbs.knots[j + 2] - nurbs.knots[j + 1];
             write_units(&mut self.modal.out, distance, nurbs.knot_digits, Spelling::PLAIN);

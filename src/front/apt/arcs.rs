@@ -5,7 +5,6 @@
 //! such neighbours votes, and where most votes of a file contradict its system a warning says so.
 
 use super::motion::Pending;
-use super::program::position;
 use super::reader::{Reader, Said};
 use super::statement::{Placed, Statement};
 use super::words::Hand;
@@ -224,7 +223,16 @@ impl Reader<'_> {
             (end[u], end[v]) = (start[u], start[v]);
         }
         let center = [circle.center[u], circle.center[v]];
-        let arc = match Arc::new(circle.plane, circle.sense, position(&start), position(&end), center) {
+        if self.program.stood() != self.program.axis() {
+            return self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
+        }
+        let arc = match Arc::new(
+            circle.plane,
+            circle.sense,
+            self.program.place(&start),
+            self.program.place(&end),
+            center,
+        ) {
             Ok(arc) => arc,
             Err(error) => return self.error("arc", error.to_string(), whole),
         };

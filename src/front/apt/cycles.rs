@@ -1,6 +1,6 @@
 //! Drilling cycles, expanded into moves: every control does the same then, and the proof covers it.
 //!
-//! With the point P of a `GOTO`, the tool along Z, CLEAR (or RAPTO) c above it and DEPTH (or FEDTO) d below it:
+//! With the point P of a `GOTO`, CLEAR (or RAPTO) c above it and DEPTH (or FEDTO) d below it, both along the tool:
 //!
 //! ```text
 //! DRILL CSINK FACE SPDRL   rapid over P to P + c; feed to P − d; dwell; rapid to P + c, or to RTRCTO
@@ -11,6 +11,7 @@
 //!
 //! A rapid over P never goes down before it is over P, and never goes across before it is up.
 
+use super::program::UPRIGHT;
 use super::reader::{Reader, Said};
 use super::statement::Argument;
 use super::technology::Feed;
@@ -202,14 +203,33 @@ impl Reader<'_> {
         self.pending = None;
         let feed = cycle.feed.or(self.feed);
         let Some(feed) = self.per_minute(feed, span) else { return };
-        let [x, y, z] = point;
-        let at = |height: f64| [x, y, height];
-        let (top, bottom) = (z + cycle.clear, z - cycle.depth);
-        if let Some([from_x, from_y, from_z]) = self.program.position {
-            if from_z < top {
-                self.program.rapid(&[from_x, from_y, top], span);
-            } else if (from_x, from_y) != (x, y) && top < from_z {
-                self.program.rapid(&at(from_z), span);
+        let axis = self.program.axis();
+        // So far above the point, along the tool.
+        let at = |h: f64| -> [f64; 3] { std::array::from_fn(|i| point[i] + h * axis[i]) };
+        let (top, bottom) = (cycle.clear, -cycle.depth);
+        if let Some(from) = self.program.position {
+            if self.program.stood() != axis {
+                let message =
+                    "the tool turns on its way to this hole, and a cycle does not say where that is clear";
+                self.push(
+                    Diagnostic::refusal("cycle-turns", message)
+                        .at(span, "")
+                        .hint("a move before the cycle turns the tool, behind CYCLE/OFF between two holes"),
+                );
+                return;
+            }
+            let height: f64 = (0..3).map(|i| (from[i] - point[i]) * axis[i]).sum();
+            let over = at(height);
+            // Squarely over or under the point only rounding is left.
+            let aside = (0..3).any(|i| 1.0e-9 < (from[i] - over[i]).abs());
+            if height < top {
+                let mut up: [f64; 3] = std::array::from_fn(|i| from[i] + (top - height) * axis[i]);
+                if axis == UPRIGHT {
+                    up = [from[0], from[1], at(top)[2]];
+                }
+                self.program.rapid(&up, span);
+            } else if aside && top < height {
+                self.program.rapid(&over, span);
             }
         }
         if self.program.position != Some(at(top)) {
@@ -225,7 +245,7 @@ impl Reader<'_> {
             Kind::Deep => {
                 let pecks = (cycle.depth / cycle.step - 1.0e-9).ceil().max(1.0) as usize;
                 for k in 1..=pecks {
-                    let to = if k == pecks { bottom } else { z - cycle.step * k as f64 };
+                    let to = if k == pecks { bottom } else { -cycle.step * k as f64 };
                     self.program.line(&at(to), feed, line, span);
                     self.dwell(&cycle, span);
                     if k < pecks {
@@ -235,7 +255,7 @@ impl Reader<'_> {
                 }
             }
         }
-        let up = z + cycle.retract;
+        let up = cycle.retract;
         if cycle.kind == Kind::Ream {
             self.program.line(&at(top), feed, line, span);
         }

@@ -23,7 +23,7 @@
 //! | `statement` | a statement is a major word and arguments |
 //! | `words` | what a word means, as data |
 //! | `reader` | what statements mean, one after the other: modes end here |
-//! | `technology`, `motion`, `arcs`, `cycles`, `splines`, `remarks` | its parts |
+//! | `technology`, `motion`, `arcs`, `cycles`, `splines`, `directions`, `remarks` | its parts |
 //! | `systems` | one file a CAM system: how it is recognised, and what it does differently |
 //! | `program` | moves become the steps of a program |
 //!
@@ -32,6 +32,7 @@
 
 mod arcs;
 mod cycles;
+mod directions;
 mod motion;
 mod program;
 mod reader;

@@ -1,6 +1,7 @@
 //! Points, increments, rapids and the tool axis.
 
 use super::arcs::{Circle, Left};
+use super::program::UPRIGHT;
 use super::reader::{Reader, Said};
 use super::records::Record;
 use super::technology::Feed;
@@ -96,24 +97,24 @@ impl Reader<'_> {
         }
     }
 
-    /// Takes a tool axis; whether it is Z.
-    fn set_axis(&mut self, axis: [f64; 3], span: Span) -> bool {
+    /// Takes a tool axis; whether it is a direction.
+    pub(super) fn set_axis(&mut self, axis: [f64; 3], span: Span) -> bool {
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         if !(0.5 < length && length < 2.0) {
             self.error("tool-axis", "the tool axis is no direction", span);
             return false;
         }
-        self.axis = axis.map(|x| x / length);
-        let [x, y, z] = self.axis;
-        if x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z {
-            return true;
+        let [x, y, z] = axis.map(|x| x / length);
+        let upright = x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z;
+        let axis = if upright { UPRIGHT } else { [x, y, z] };
+        if axis != self.program.axis() {
+            if let Some(Pending::Circle(_)) = &self.pending {
+                self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
+                return false;
+            }
+            self.program.turn(axis);
         }
-        self.push(
-            Diagnostic::refusal("tool-axis-tilted", "the tool axis is not Z; three axes are compiled")
-                .at(span, "")
-                .hint("output the operation in the frame of the tilted plane, with the tool along Z"),
-        );
-        false
+        true
     }
 
     /// `MULTAX[/ON|OFF]`: whether points carry an axis; each point shows it anyway.
@@ -177,7 +178,7 @@ impl Reader<'_> {
             return self.error("start-unknown", "an increment from a place that is not known", said.span);
         };
         let by = match said.statement.numbers().as_deref() {
-            Some(&[d]) => self.axis.map(|x| x * d),
+            Some(&[d]) => self.program.axis().map(|x| x * d),
             Some(&[x, y, z]) => [x, y, z],
             _ => return self.error("arguments", "GODLTA takes one or three numbers", said.span),
         };

@@ -5,10 +5,13 @@ use crate::geom::arc::Arc;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step};
 use crate::source::Span;
-use crate::units::{Axes, Axis, Kind, Position};
+use crate::units::{Axes, Position};
 
-/// How many coordinates there are: X Y Z.
+/// How many coordinates a place has: X Y Z of the tip.
 pub(super) const AXES: usize = 3;
+
+/// Along Z.
+pub(super) const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A program in the making.
 pub(super) struct Builder {
@@ -20,17 +23,108 @@ pub(super) struct Builder {
     told: bool,
     /// Where the tool was before that.
     pub(super) before: Option<[f64; AXES]>,
+    /// The direction of the tool, of length 1.
+    axis: [f64; 3],
+    /// The direction that it had when its last move ended.
+    stood: [f64; 3],
+    /// Whether the tool was ever tilted, so that every place has its direction too.
+    five: bool,
 }
 
-/// X Y Z in six places.
-pub(super) fn position(point: &[f64; AXES]) -> Position {
-    [point[0], point[1], point[2], 0.0, 0.0, 0.0]
+/// A tip and a direction in six places.
+pub(super) fn joined(tip: &[f64; AXES], axis: &[f64; 3]) -> Position {
+    [tip[0], tip[1], tip[2], axis[0], axis[1], axis[2]]
+}
+
+/// The components of a direction as a rapid names them.
+fn directed(axis: &[f64; 3]) -> impl Iterator<Item = (usize, f64)> + use<> {
+    let axis = *axis;
+    (0..3).map(move |i| (AXES + i, axis[i]))
+}
+
+/// A curve of an upright tool, its direction stated.
+fn upright(curve: &Curve) -> Curve {
+    let place = |p: &Position| joined(&[p[0], p[1], p[2]], &UPRIGHT);
+    match curve {
+        Curve::Lines(line) => {
+            let mut directed = Polyline::new(place(&line.start), 2 * AXES);
+            line.points().for_each(|point| directed.push(&place(&point)));
+            directed.lines.clone_from(&line.lines);
+            Curve::Lines(directed)
+        }
+        Curve::Arc(arc) => Curve::Arc(arc.mapped_along(place)),
+        Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
+        // CL data has none of these.
+        Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
+            curve.clone()
+        }
+    }
 }
 
 impl Builder {
     /// An empty program.
     pub(super) fn new() -> Builder {
-        Builder { steps: Vec::new(), run: None, position: None, told: false, before: None }
+        Builder {
+            steps: Vec::new(),
+            run: None,
+            position: None,
+            told: false,
+            before: None,
+            axis: UPRIGHT,
+            stood: UPRIGHT,
+            five: false,
+        }
+    }
+
+    /// How many coordinates the program has.
+    fn stride(&self) -> usize {
+        if self.five { 2 * AXES } else { AXES }
+    }
+
+    /// A tip with the direction that the tool has.
+    pub(super) fn place(&self, tip: &[f64; AXES]) -> Position {
+        if self.five { joined(tip, &self.axis) } else { joined(tip, &[0.0; 3]) }
+    }
+
+    /// Turns the tool to a direction of length 1 with its next move. The first that is not Z makes the program one of five
+    /// axes: up to there the tool stood upright.
+    pub(super) fn turn(&mut self, axis: [f64; 3]) {
+        if !self.five && axis != UPRIGHT {
+            self.flush();
+            self.five = true;
+            for located in &mut self.steps {
+                match &mut located.step {
+                    Step::Rapid(targets) => targets.extend(directed(&UPRIGHT)),
+                    Step::Cut(cut) => cut.curve = upright(&cut.curve),
+                    Step::Comment(_)
+                    | Step::Tool(_)
+                    | Step::Spindle(_)
+                    | Step::Coolant
+                    | Step::Home(_)
+                    | Step::Shift(_)
+                    | Step::Auxiliary(_) => {}
+                }
+            }
+        }
+        self.axis = axis;
+    }
+
+    /// Makes the program one of five axes.
+    pub(super) fn tilt(&mut self) {
+        let axis = self.axis;
+        // Any other direction makes it one.
+        self.turn([0.0; 3]);
+        self.axis = axis;
+    }
+
+    /// The direction that the tool had when its last move ended.
+    pub(super) fn stood(&self) -> [f64; 3] {
+        self.stood
+    }
+
+    /// The direction of the tool.
+    pub(super) fn axis(&self) -> [f64; 3] {
+        self.axis
     }
 
     /// Whether anything was cut or moved yet.
@@ -89,10 +183,15 @@ impl Builder {
         if targets.is_empty() {
             targets.push((0, to[0]));
         }
+        if self.five {
+            // A direction is never modal.
+            targets.extend(directed(&self.axis));
+        }
         self.step(Step::Rapid(targets), span);
         self.before = self.position;
         self.position = Some(*to);
         self.told = true;
+        self.stood = self.axis;
     }
 
     /// Goes to a point in a straight line, mm/min.
@@ -101,15 +200,25 @@ impl Builder {
         if self.run.as_ref().is_some_and(|(_, known, _)| *known != feed) {
             self.flush();
         }
-        let start = self.position.unwrap_or(*to);
-        let (points, _, whole) =
-            self.run.get_or_insert_with(|| (Polyline::new(position(&start), AXES), feed, span));
+        let start = match self.position {
+            Some(tip) if self.five => joined(&tip, &self.stood),
+            Some(tip) => self.place(&tip),
+            None => self.place(to),
+        };
+        if self.run.is_none() {
+            self.run = Some((Polyline::new(start, self.stride()), feed, span));
+        }
+        let Some((points, _, whole)) = &mut self.run else { return };
         points.values.extend_from_slice(to);
+        if self.five {
+            points.values.extend_from_slice(&self.axis);
+        }
         points.lines.push(line);
         whole.end = span.end;
         self.before = self.position;
         self.position = Some(*to);
         self.told = true;
+        self.stood = self.axis;
     }
 
     /// Follows an arc, mm/min.
@@ -120,6 +229,7 @@ impl Builder {
         self.step(Step::Cut(cut), span);
         self.position = Some([end[0], end[1], end[2]]);
         self.told = true;
+        self.stood = self.axis;
     }
 
     /// Follows a spline, mm/min.
@@ -129,7 +239,12 @@ impl Builder {
         let cut = Cut { feed: Some(feed), role: Role::Path, curve: Curve::Nurbs(nurbs) };
         self.step(Step::Cut(cut), span);
         self.position = end.map(|end| [end[0], end[1], end[2]]);
+        if let Some([_, _, _, x, y, z]) = end.filter(|_| self.five) {
+            let length = (x * x + y * y + z * z).sqrt();
+            self.axis = [x / length, y / length, z / length];
+        }
         self.told = true;
+        self.stood = self.axis;
     }
 
     /// What was asked, in all.
@@ -148,9 +263,8 @@ impl Builder {
             let message = "the file has no move";
             return Err(Diagnostic::error("moves-missing", message).at(whole, "").into());
         }
-        let linear = |name| Axis::new(name).map(|axis| (axis, Kind::Linear));
-        let list: Option<Vec<(Axis, Kind)>> = ["X", "Y", "Z"].into_iter().map(linear).collect();
-        let axes = list.and_then(|list| Axes::new(&list)).ok_or_else(Diagnostics::new)?;
+        let all = Axes::with_direction();
+        let axes = Axes::new(&all.as_slice()[..self.stride()]).ok_or_else(Diagnostics::new)?;
         let program = Program { name, number: 1, axes, steps: self.steps };
         Ok(Intent { program, tolerance: None, name_span, radius: None, warnings })
     }

@@ -53,8 +53,6 @@ pub(super) struct Reader<'s> {
     pub(super) tool: Option<u32>,
     /// The cutter's diameter, mm.
     pub(super) diameter: Option<f64>,
-    /// The tool axis.
-    pub(super) axis: [f64; 3],
     /// Where the tool was when the file began, for GOHOME.
     pub(super) home: Option<[f64; 3]>,
     /// A circle that waits for its end, or a tangent that waits for its arc.
@@ -63,6 +61,12 @@ pub(super) struct Reader<'s> {
     /// The cycle that CYCLE/ON takes up again.
     pub(super) last_cycle: Option<Cycle>,
     pub(super) spline: Option<Spline>,
+    /// LENGTH of `MOVNRB/5AXIS`, mm, while it holds.
+    pub(super) second_point: Option<f64>,
+    /// Where and in which direction the last spline ended.
+    pub(super) spline_end: Option<([f64; 3], [f64; 3])>,
+    /// The greatest angle at which splines meet, degrees, and the spline behind it.
+    pub(super) joint: Option<(f64, Span)>,
     pub(super) frame: Option<String>,
     pub(super) matrix: Option<Matrix>,
     /// How many arcs agree with the sense that their system has, and how many do not, by their neighbours' tangents.
@@ -137,12 +141,14 @@ impl<'s> Reader<'s> {
             rpm: None,
             tool: None,
             diameter: None,
-            axis: [0.0, 0.0, 1.0],
             home: None,
             pending: None,
             cycle: None,
             last_cycle: None,
             spline: None,
+            second_point: None,
+            spline_end: None,
+            joint: None,
             frame: None,
             matrix: None,
             votes: super::arcs::Votes::default(),
@@ -181,6 +187,7 @@ impl<'s> Reader<'s> {
         self.end_spline();
         self.end_pending();
         self.vote();
+        self.joints();
         for (word, (count, span)) in std::mem::take(&mut self.left_out) {
             let times = if count == 1 { String::new() } else { format!(", {count} times") };
             let message = format!("{word} is left out{times}: it says nothing that the program needs");

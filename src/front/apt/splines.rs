@@ -15,7 +15,8 @@
 //! and those of NX 0 four times, the values listed but for the last, and that four times. Only ratios of knots count, so
 //! those of NX and Creo are scaled to the length of the control polygon, in mm, as those of CATIA are.
 
-use super::program::position;
+use super::directions::Second;
+use super::program::joined;
 use super::reader::{Reader, Said};
 use super::statement::{Argument, Placed};
 use super::words::Meaning;
@@ -45,7 +46,11 @@ pub(super) enum Spline {
 #[derive(Clone, Debug)]
 pub(super) struct Siemens {
     feed: f64,
+    /// LENGTH, mm, of AXIS=VAR.
+    length: Option<f64>,
     points: Vec<[f64; 3]>,
+    /// XH YH ZH less XT YT ZT, where LENGTH is stated.
+    directions: Vec<[f64; 3]>,
     increments: Vec<f64>,
     weights: Vec<f64>,
     span: Span,
@@ -67,6 +72,8 @@ pub(super) struct Creo {
     point_count: usize,
     knots: Vec<f64>,
     numbers: Vec<f64>,
+    /// Points of the upper curve.
+    upper: Vec<f64>,
     span: Span,
 }
 
@@ -162,9 +169,19 @@ impl Reader<'_> {
             let message = "whether F counts inches in a file of inches is not known";
             return self.refuse("nurbs-inches", message, said.span);
         }
-        let axis = header.iter().position(
-            |placed| matches!(placed.argument, Argument::Assigned(name, _) if name.eq_ignore_ascii_case("AXIS")),
-        );
+        let axis = header.iter().position(|placed| match placed.argument {
+            Argument::Assigned(name, _) => name.eq_ignore_ascii_case("AXIS"),
+            Argument::AssignedWord(name, word) => {
+                name.eq_ignore_ascii_case("AXIS") && word.eq_ignore_ascii_case("VAR")
+            }
+            Argument::Empty
+            | Argument::Number(_)
+            | Argument::Word(_)
+            | Argument::Quoted(_)
+            | Argument::Group(_) => false,
+        });
+        let stated = assigned(header, "LENGTH").filter(|length| 0.0 < *length && length.is_finite());
+        let mut length = None;
         match axis.map(|at| &header[at..]) {
             Some(
                 [
@@ -172,19 +189,24 @@ impl Reader<'_> {
                     Placed { argument: Argument::Number(j), .. },
                     Placed { argument: Argument::Number(k), .. },
                 ],
-            ) if *i == 0.0 && *j == 0.0 && 0.0 < *k => {}
-            Some(_) => {
-                let message = "the tool axis of this spline is not Z; three axes are compiled";
-                return self.refuse("tool-axis-tilted", message, said.span);
+            ) => {
+                if !self.keeps_axis([*i, *j, *k], said.span) {
+                    return;
+                }
             }
-            None => {
-                let message = "AXIS=VAR: splines of five axes are not compiled";
-                return self.refuse("tool-axis-tilted", message, said.span);
+            Some([Placed { argument: Argument::AssignedWord(..), .. }, ..]) if stated.is_some() => {
+                length = stated;
+            }
+            Some(_) | None => {
+                let message = "AXIS is three numbers, or VAR with a LENGTH greater than zero behind it";
+                return self.error("nurbs-header", message, said.span);
             }
         }
         self.spline = Some(Spline::Siemens(Siemens {
             feed,
+            length,
             points: Vec::new(),
+            directions: Vec::new(),
             increments: Vec::new(),
             weights: Vec::new(),
             span: said.span,
@@ -195,6 +217,7 @@ impl Reader<'_> {
     fn siemens_point(&mut self, said: &Said<'_>, index: &str) {
         let value = |name: &str| assigned(said.arguments(), name);
         let all = (value("XT"), value("YT"), value("ZT"), value("DK"), value("W"));
+        let second = (value("XH"), value("YH"), value("ZH"));
         let Some(Spline::Siemens(spline)) = &mut self.spline else { return };
         let expected = spline.points.len();
         let (Some(x), Some(y), Some(z), Some(dk), Some(w)) = all else {
@@ -217,6 +240,15 @@ impl Reader<'_> {
             self.spline = None;
             return self.error("nurbs-point", "the spline has too many points", said.span);
         }
+        match (second, spline.length) {
+            ((Some(xh), Some(yh), Some(zh)), Some(_)) => spline.directions.push([xh - x, yh - y, zh - z]),
+            ((None, None, None), None) => {}
+            _ => {
+                self.spline = None;
+                let message = "XH, YH and ZH stand in every point under AXIS=VAR, and in none otherwise";
+                return self.error("nurbs-point", message, said.span);
+            }
+        }
         spline.points.push([x, y, z]);
         spline.increments.push(dk);
         spline.weights.push(w);
@@ -238,10 +270,22 @@ impl Reader<'_> {
         let numbers: Vec<f64> =
             arguments.iter().skip(1).filter_map(|placed| placed.argument.number()).collect();
         match (first, &mut self.spline) {
-            (Some(Argument::Word(word)), None) if word.eq_ignore_ascii_case("M3AXIS") => {}
-            (Some(Argument::Word(word)), _) if word.eq_ignore_ascii_case("5AXIS") => {
-                let message = "MOVNRB/5AXIS: splines of five axes are not compiled";
-                self.refuse("tool-axis-tilted", message, said.span);
+            (Some(Argument::Word(word)), None) if word.eq_ignore_ascii_case("M3AXIS") => {
+                self.second_point = None;
+            }
+            (Some(Argument::Word(word)), None) if word.eq_ignore_ascii_case("5AXIS") => {
+                let length = arguments
+                    .windows(2)
+                    .find(|pair| {
+                        pair[0].argument.word().is_some_and(|word| word.eq_ignore_ascii_case("LENGTH"))
+                    })
+                    .and_then(|pair| pair[1].argument.number())
+                    .filter(|length| 0.0 < *length && length.is_finite());
+                if length.is_none() {
+                    let message = "MOVNRB/5AXIS states the LENGTH from the tip to the upper curve";
+                    self.error("nurbs-header", message, said.span);
+                }
+                self.second_point = length.map(|length| length * self.scale);
             }
             (Some(Argument::Word(word)), None) if word.eq_ignore_ascii_case("ON") => {
                 let count = |x: f64| {
@@ -265,11 +309,16 @@ impl Reader<'_> {
                     point_count: points,
                     knots: Vec::new(),
                     numbers: Vec::new(),
+                    upper: Vec::new(),
                     span: said.span,
                 }));
             }
-            (Some(Argument::Number(part)), Some(Spline::Creo(creo))) if part == 1.0 || part == 2.0 => {
-                let list = if part == 1.0 { &mut creo.knots } else { &mut creo.numbers };
+            (Some(Argument::Number(part)), Some(Spline::Creo(creo))) if [1.0, 2.0, 3.0].contains(&part) => {
+                let list = match part {
+                    1.0 => &mut creo.knots,
+                    2.0 => &mut creo.numbers,
+                    _ => &mut creo.upper,
+                };
                 if 4 * MAX_POINTS < list.len() + numbers.len() {
                     self.spline = None;
                     return self.error("nurbs-point", "the spline has too many points", said.span);
@@ -298,7 +347,7 @@ impl Reader<'_> {
     }
 
     fn end_siemens(&mut self, siemens: Siemens) {
-        let Siemens { feed, points, increments, weights, span } = siemens;
+        let Siemens { feed, length, points, directions, increments, weights, span } = siemens;
         let mut knots = vec![0.0, 0.0];
         let mut t = 0.0;
         for increment in increments {
@@ -306,7 +355,8 @@ impl Reader<'_> {
             knots.push(t);
         }
         knots.extend([t, t]);
-        self.curve(3, knots, &points, weights, feed, span);
+        let second = length.map(|length| Second { directions, length });
+        self.curve(3, knots, &points, second, weights, feed, span);
     }
 
     fn end_nx(&mut self, nx: Nx) {
@@ -328,11 +378,16 @@ impl Reader<'_> {
         let mut all = vec![0.0; 4];
         all.extend(&knots[..knots.len().saturating_sub(1)]);
         all.extend([last; 4]);
-        self.with_feed(3, all, &points, span);
+        self.with_feed(3, all, &points, None, span);
     }
 
     fn end_creo(&mut self, creo: Creo) {
-        let Creo { order, knot_count, point_count, knots, numbers, span } = creo;
+        let Creo { order, knot_count, point_count, knots, numbers, upper, span } = creo;
+        let wanted = if self.second_point.is_some() { 3 * point_count } else { 0 };
+        if upper.len() != wanted {
+            let message = format!("{wanted} numbers of the upper curve belong here, {} follow", upper.len());
+            return self.error("nurbs-counts", message, span);
+        }
         if knots.len() != knot_count || numbers.len() != 3 * point_count || order < 2 {
             let message = format!(
                 "{knot_count} knots and {point_count} points were announced, {} and {} numbers follow",
@@ -344,12 +399,23 @@ impl Reader<'_> {
         let scale = self.scale;
         let points: Vec<[f64; 3]> =
             numbers.chunks_exact(3).map(|p| [p[0] * scale, p[1] * scale, p[2] * scale]).collect();
+        let along = upper.chunks_exact(3).zip(&points);
+        let directions =
+            along.map(|(h, p)| [h[0] * scale - p[0], h[1] * scale - p[1], h[2] * scale - p[2]]).collect();
+        let second = self.second_point.map(|length| Second { directions, length });
         let first = knots.first().copied().unwrap_or(0.0);
-        self.with_feed(order - 1, knots.iter().map(|t| t - first).collect(), &points, span);
+        self.with_feed(order - 1, knots.iter().map(|t| t - first).collect(), &points, second, span);
     }
 
     /// A spline at the feed in force, its knots scaled to the length of its polygon.
-    fn with_feed(&mut self, degree: usize, mut knots: Vec<f64>, points: &[[f64; 3]], span: Span) {
+    fn with_feed(
+        &mut self,
+        degree: usize,
+        mut knots: Vec<f64>,
+        points: &[[f64; 3]],
+        second: Option<Second>,
+        span: Span,
+    ) {
         let feed = self.feed;
         let Some(feed) = self.per_minute(feed, span) else { return };
         let size =
@@ -363,14 +429,16 @@ impl Reader<'_> {
             }
         }
         let weights = vec![1.0; points.len()];
-        self.curve(degree, knots, points, weights, feed, span);
+        self.curve(degree, knots, points, second, weights, feed, span);
     }
 
+    #[allow(clippy::too_many_arguments, reason = "they are what a spline is made of")]
     fn curve(
         &mut self,
         degree: usize,
         knots: Vec<f64>,
         points: &[[f64; 3]],
+        second: Option<Second>,
         weights: Vec<f64>,
         feed: f64,
         span: Span,
@@ -379,7 +447,12 @@ impl Reader<'_> {
             return self.refuse("rapid-arc", "a spline at rapid is not compiled", span);
         }
         self.pending = None;
-        let all: Vec<Position> = points.iter().map(position).collect();
+        let all: Vec<Position> = match &second {
+            None => points.iter().map(|point| self.program.place(point)).collect(),
+            Some(second) => {
+                points.iter().zip(&second.directions).map(|(tip, along)| joined(tip, along)).collect()
+            }
+        };
         let nurbs = match Nurbs::new(degree, knots, all, weights) {
             Ok(nurbs) => nurbs,
             Err(error) => return self.error("nurbs", error.to_string(), span),
@@ -392,6 +465,17 @@ impl Reader<'_> {
         if START_SLACK < gap {
             let message = format!("the spline starts {gap:.4} mm from where the tool is");
             return self.push(Diagnostic::error("spline-start", message).at(span, ""));
+        }
+        if second.is_none() && self.program.stood() != self.program.axis() {
+            return self.error(
+                "spline-axis",
+                "the tool turns where this spline starts: no move turned it",
+                span,
+            );
+        }
+        self.meets(&nurbs, span);
+        if let Some(second) = second {
+            self.second_curve(&nurbs, second.length, span);
         }
         self.program.spline(nurbs, feed, span);
     }

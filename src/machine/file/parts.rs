@@ -2,9 +2,14 @@
 
 use super::Reader;
 use crate::diagnostic::Diagnostic;
-use crate::machine::keys::{AxisFile, DigitsFile, ParameterFile, ProgramFile, SplineFile, TextFile};
+use crate::dialect::Dialect;
+use crate::machine::keys::{
+    AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile, TextFile,
+};
 use crate::machine::template::Template;
-use crate::machine::{AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Parameters, Spline, Text};
+use crate::machine::{
+    AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Orientation, Parameters, Spline, Text, Turn,
+};
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
 use toml::Spanned;
@@ -157,6 +162,65 @@ impl Reader {
         })
     }
 
+    /// How the direction of the tool is stated and turned.
+    pub(super) fn orientation(
+        &mut self,
+        file: &OrientationFile,
+        dialect: &Dialect,
+        base: Option<Orientation>,
+    ) -> Option<Orientation> {
+        if let Some(digits) = &file.digits
+            && !(3..=9).contains(digits.get_ref())
+        {
+            self.error("digits-range", "a direction has 3 to 9 decimals", digits.span());
+        }
+        let mut positive = |value: &Option<Spanned<f64>>, name: &str| {
+            if let Some(value) = value
+                && !(0.0 < *value.get_ref() && value.get_ref().is_finite())
+            {
+                let message = format!("{name} must be greater than zero");
+                self.error("orientation-range", message, value.span());
+            }
+            value.as_ref().map(|value| *value.get_ref())
+        };
+        let tolerance = positive(&file.tolerance, "tolerance");
+        let length = positive(&file.length, "length");
+        if let Some(height) = file.safe_height.as_ref().filter(|height| !height.get_ref().is_finite()) {
+            self.error("orientation-range", "safe_height is a number of millimetres", height.span());
+        }
+        if let Some(second) = file.second_curve.as_ref().filter(|second| *second.get_ref())
+            && !dialect.second_curve
+        {
+            let message = format!("{} has no words for a second curve", dialect.name);
+            self.error("second-curve", message, second.span());
+        }
+        let turn = match &file.turn {
+            None => self.or(None, base.map(|b| b.turn), "orientation.turn")?,
+            Some(word) => match word.get_ref().as_str() {
+                "great-circle" => Turn::GreatCircle,
+                "tilt" => Turn::Tilt,
+                _ => {
+                    self.error("orientation-turn", "turn is \"great-circle\" or \"tilt\"", word.span());
+                    Turn::GreatCircle
+                }
+            },
+        };
+        let digits = file.digits.as_ref().map(|digits| *digits.get_ref());
+        let second = file.second_curve.as_ref().map(|second| *second.get_ref());
+        Some(Orientation {
+            digits: self.or(digits, base.map(|b| b.digits), "orientation.digits")?,
+            tolerance: self.or(tolerance, base.map(|b| b.tolerance), "orientation.tolerance")?,
+            turn,
+            second_curve: self.or(second, base.map(|b| b.second_curve), "orientation.second_curve")?,
+            length: self.or(length, base.map(|b| b.length), "orientation.length")?,
+            safe_height: file
+                .safe_height
+                .as_ref()
+                .map(|height| *height.get_ref())
+                .or(base.and_then(|b| b.safe_height)),
+        })
+    }
+
     fn lines(
         &mut self,
         own: Option<Vec<Spanned<String>>>,
@@ -258,6 +322,14 @@ impl Reader {
             stop: lines(self, file.stop, |b| &b.stop, "stop", &[])?,
             optional_stop: lines(self, file.optional_stop, |b| &b.optional_stop, "optional_stop", &[])?,
             dwell: lines(self, file.dwell, |b| &b.dwell, "dwell", &["seconds"])?,
+            tip_control: lines(self, file.tip_control, |b| &b.tip_control, "tip_control", &["tool"])?,
+            tip_control_end: lines(
+                self,
+                file.tip_control_end,
+                |b| &b.tip_control_end,
+                "tip_control_end",
+                &[],
+            )?,
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
             footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
             subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,

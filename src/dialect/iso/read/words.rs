@@ -40,7 +40,7 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Alpha));
     let letter = input.bytes().next().filter(u8::is_ascii_uppercase).ok_or_else(failed)?;
     let (rest, value) = number(&input[1..])?;
-    if rest.starts_with('=') {
+    if rest.trim_ascii_start().starts_with('=') {
         return Err(failed());
     }
     Ok((rest, Word::Address(letter, value)))

@@ -2,6 +2,7 @@
 
 use super::{Block, Motion, Reader, STATE_CODES};
 use crate::decimal::Decimal;
+use crate::dialect::sinumerik::write::turn_word;
 use crate::ir::ThroughKind;
 use std::ops::Range;
 
@@ -44,6 +45,19 @@ impl Reader<'_> {
             }
             "BAUTO" | "BNAT" | "BTAN" => self.end_condition(keyword, true, range),
             "EAUTO" | "ENAT" | "ETAN" => self.end_condition(keyword, false, range),
+            "ORICURVE" => {
+                self.flush();
+                self.second = true;
+            }
+            "ORIVECT" | "ORIAXES" => {
+                self.flush();
+                self.second = false;
+                let own = turn_word(self.assembler.machine.orientation.turn);
+                if keyword != own {
+                    let message = format!("the machine file turns the tool by {own}, not {keyword}");
+                    self.assembler.error("orientation-turn", message, range);
+                }
+            }
             _ if STATE_CODES.contains(&keyword) => {}
             _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
         }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::diagnostic::Severity;
 use crate::ir::Cut;
+use crate::verify::to_nurbs;
 
 /// A machine of X and Y without lines of its own round a program, to read fragments with.
 fn fragment(text: &str) -> Result<Warned<Reading>, Diagnostics> {

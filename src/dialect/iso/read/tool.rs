@@ -1,0 +1,66 @@
+//! The length of the tool, G43, and its direction where the tip is led.
+
+use super::{Block, Motion, Reader};
+use std::ops::Range;
+
+impl Reader<'_> {
+    /// Where the tip is led, I J K of a rapid or a straight move are the tool's direction; false where that is wrong.
+    pub(super) fn directed(&mut self, block: &mut Block, whole: Range<usize>) -> bool {
+        let straight = matches!(self.motion, Motion::Rapid | Motion::Line);
+        let stated = block.i.is_some() || block.j.is_some() || block.k.is_some();
+        if !straight || !stated || self.assembler.machine.axes.direction().is_none() {
+            return true;
+        }
+        let words = [block.i.take(), block.j.take(), block.k.take()];
+        let Some(named) = self.assembler.direction(words.map(|word| word.map(|(value, _)| value)), whole)
+        else {
+            return false;
+        };
+        for (axis, units) in named {
+            block.named[block.count] = (axis, units);
+            block.count += 1;
+        }
+        true
+    }
+
+    /// `length_offset = "G", { "0" }, "43", { blank }, "H", number`, after a tool call whose lines in the machine file end
+    /// with it; also with words between
+    pub(super) fn length_offset(&mut self, block: &mut Block, whole: Range<usize>) {
+        let (offset, number) = (block.offset.take(), block.h.take());
+        // Due after a tool call; after that each section may call it again.
+        match (offset, number, self.offset_due.or(self.offset_again)) {
+            (Some(_), Some((h, range)), Some(tool)) => {
+                if h.units(0) != Some(i64::from(tool)) {
+                    self.error(
+                        "tool-offset",
+                        format!("the offset of tool {tool} is called here, not that of H{h}"),
+                        range,
+                    );
+                }
+                self.offset_due = None;
+                self.offset_again = None;
+                self.offset_tool = Some(tool);
+            }
+            (Some(range), _, _) => {
+                self.error("tool-offset", "G43 H is read after a tool call that asks for it", range);
+            }
+            (None, Some((_, range)), _) => self.error("word-unknown", "H is read with G43 only", range),
+            (None, None, _) => {
+                let Some(tool) = self.offset_due else { return };
+                let moves = match self.motion {
+                    Motion::None => false,
+                    Motion::Rapid => block.named().iter().any(|(axis, _)| Some(*axis) == self.z),
+                    Motion::Line | Motion::Arc(_) | Motion::Nurbs | Motion::Through => 0 < block.count,
+                };
+                if moves {
+                    self.offset_due = None;
+                    self.error(
+                        "tool-offset-missing",
+                        format!("tool {tool} moves before its `G43 H{tool}`"),
+                        whole,
+                    );
+                }
+            }
+        }
+    }
+}
