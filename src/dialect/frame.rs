@@ -281,11 +281,16 @@ impl<'m> Frame<'m> {
                 }
                 "tool" => {
                     let Ok(number) = value.parse::<u32>() else { return false };
-                    // A line that follows, as `G43 H{tool}`, names the same tool or is another line; so does one that takes
-                    // the length of the tool for five axes.
-                    if first && self.machine.frame.tip_control.first() != Some(template) {
+                    if self.machine.frame.tip_control.first() == Some(template) {
+                        // The length of the tool that leads its tip.
+                        if assembler.tool() != Some(number) {
+                            let message = format!("tool {number} was not called before its tip is led");
+                            assembler.error("tool-offset", message, span.start as usize..span.end as usize);
+                        }
+                    } else if first {
                         assembler.step(Step::Tool(number), span);
                     } else if assembler.tool() != Some(number) {
+                        // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
                         return false;
                     }
                 }
