@@ -201,7 +201,7 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
         out.push(b'+');
     }
     let magnitude = units.unsigned_abs();
-    let (whole, mut fraction) = split(magnitude, digits);
+    let (whole, fraction) = split(magnitude, digits);
     let mut buffer = itoa::Buffer::new();
     if whole != 0 || fraction == 0 || spelling.leading_zero {
         out.extend_from_slice(buffer.format(whole).as_bytes());
@@ -212,22 +212,13 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
         }
         return;
     }
-    out.push(b'.');
-    let start = out.len();
-    out.resize(start + usize::from(digits), b'0');
-    let mut end = out.len();
-    let mut trailing = true;
-    for place in (start..end).rev() {
-        let digit = (fraction % 10) as u8;
-        fraction /= 10;
-        if trailing && digit == 0 {
-            end = place;
-        } else {
-            trailing = false;
-            out[place] = b'0' + digit;
-        }
+    // With a one before it the fraction keeps the zeros at its front.
+    let mut padded = buffer.format(power_of_ten(digits) as u64 + fraction).as_bytes();
+    while let [rest @ .., b'0'] = padded {
+        padded = rest;
     }
-    out.truncate(end);
+    out.push(b'.');
+    out.extend_from_slice(&padded[1..]);
 }
 
 /// The whole part and the fraction of `magnitude` / 10^`digits`. A division by a constant is a multiplication, and

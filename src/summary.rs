@@ -113,8 +113,7 @@ impl Summary {
             name: intent.program.name.clone(),
             machine: machine.name.clone(),
             motion: motion.map(str::to_owned),
-            // A continued block goes on in indented lines.
-            blocks: text.lines().filter(|line| !line.starts_with(' ')).count(),
+            blocks: blocks(text),
             path_blocks: report.map(|r| r.path_blocks),
             cutting_length: report.map(|r| r.cutting_length),
             cutting_minutes: report.map(|r| r.minutes),
@@ -228,6 +227,13 @@ impl Summary {
         }
         serde_json::to_string(&Line { summary: self }).unwrap_or_default() + "\n"
     }
+}
+
+/// How many blocks a text has: a continued block goes on in indented lines.
+fn blocks(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let starts = std::iter::once(0).chain(memchr::memchr_iter(b'\n', bytes).map(|end| end + 1));
+    starts.filter(|start| bytes.get(*start).is_some_and(|first| *first != b' ')).count()
 }
 
 fn plural(n: usize) -> &'static str {

@@ -229,10 +229,12 @@ impl<'m> Modal<'m> {
     /// The name of an axis, with `=` where a value cannot follow it directly.
     #[inline]
     pub fn axis_name(&mut self, i: usize) {
-        let name = self.machine.axes.name(i);
-        self.text(name.as_str());
-        if 1 < name.as_str().len() {
-            self.out.push(b'=');
+        match self.machine.axes.name(i).as_bytes() {
+            [letter] => self.out.push(*letter),
+            name => {
+                self.out.extend_from_slice(name);
+                self.out.push(b'=');
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
 use crate::ir::{Auxiliary, Decimals, Step, Written, WrittenArc, WrittenPoints};
 use crate::pass::arcs::sagitta;
-use crate::units::Position;
+use crate::units::{MAX_AXES, Position};
 
 /// The centre of an arc in decimals, mm.
 fn center(decimals: &Decimals, arc: &WrittenArc) -> [f64; 2] {
@@ -49,27 +49,27 @@ impl Cursor<'_> {
     /// arc, but for what is found; between, a chord leaves the arc by its sagitta.
     fn arc_of_lines(&mut self, asked: &Arc, points: &WrittenPoints) -> Result<Found, Diagnostics> {
         let end = asked.end();
-        let rest = points.count() - self.within;
         // The lines may run on into others of the same feed, so that the end of the arc is looked for.
         let slack =
             0.5 * (0..3).map(|i| units_to_f64(1, self.decimals.digits[i])).fold(0.0, f64::max) * 1.0001;
         let near = |p: &Position| (0..3).all(|i| (p[i] - end[i]).abs() <= slack);
-        let all: Vec<Position> = points
-            .points()
-            .skip(self.within)
-            .take(rest)
-            .map(|units| self.decimals.position(&units))
-            .collect();
+        let all = || {
+            let rest = points.units[self.within * points.stride..].chunks_exact(points.stride);
+            rest.map(|chunk| {
+                let mut units = [0; MAX_AXES];
+                units[..chunk.len()].copy_from_slice(chunk);
+                self.decimals.position(&units)
+            })
+        };
         // A whole turn ends where it starts, so that its first lines do not count.
         let least = if asked.is_full() { 2 } else { 0 };
-        let Some(last) = (least..all.len()).find(|k| near(&all[*k])) else {
+        let Some(last) = all().enumerate().skip(least).find(|(_, p)| near(p)).map(|(last, _)| last) else {
             return Err(self.differs("less-than-asked", "the end of an arc is missing here".to_owned()));
         };
         let count = last + 1;
-        let worst = all[..count]
-            .iter()
-            .enumerate()
-            .fold(0.0f64, |worst, (i, p)| worst.max(distance(p, &asked.eval((i + 1) as f64 / count as f64))));
+        let worst = all().take(count).enumerate().fold(0.0f64, |worst, (i, p)| {
+            worst.max(distance(&p, &asked.eval((i + 1) as f64 / count as f64)))
+        });
         let mm = worst + sagitta(asked.radius(), asked.sweep().abs() / count as f64);
         self.within += count;
         self.leave(points);

@@ -143,7 +143,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
-        let code = body.split(';').next().unwrap_or_default();
+        let code = &body[..memchr::memchr(b';', body.as_bytes()).unwrap_or(body.len())];
         reader.block(code, start, line.number, span);
         if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
