@@ -15,7 +15,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
 pub use keys::{KEYS, schema};
-pub use parts::{AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Parameters, RotaryFeed, Spline, Text};
+pub use parts::{
+    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Parameters, RotaryFeed, Spline, Text,
+};
 
 /// The machines that are built in, with their files.
 pub const BUILT_IN: &[(&str, &str)] = &[

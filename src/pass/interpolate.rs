@@ -2,7 +2,7 @@
 //! [`approximate`](super::approximate) makes of them.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::Form;
+use crate::dialect::{ArcWord, Form};
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
@@ -64,13 +64,15 @@ pub fn interpolate(
                 }));
             }
             Step::Cut(Cut { feed, role, curve: curve @ Curve::Arc(arc) }) => {
-                let curve = if (machine.dialect.takes_arc)(arc.plane(), arc.is_helix()) {
-                    curve.clone()
-                } else {
-                    Curve::Lines(super::arcs::lines(arc, tolerance))
+                let curves = match (machine.dialect.arc)(arc.plane(), arc.is_helix()) {
+                    Some(ArcWord::Way) if arc.is_full() => arc.halves().map(Curve::Arc).to_vec(),
+                    Some(ArcWord::Center | ArcWord::Way | ArcWord::Turn) => vec![curve.clone()],
+                    None => vec![Curve::Lines(super::arcs::lines(arc, tolerance))],
                 };
-                let step = Step::Cut(Cut { feed: *feed, role: *role, curve });
-                steps.push(Located { step, span: located.span });
+                steps.extend(curves.into_iter().map(|curve| Located {
+                    step: Step::Cut(Cut { feed: *feed, role: *role, curve }),
+                    span: located.span,
+                }));
             }
             Step::Cut(Cut { feed, role: Role::Path, curve }) => {
                 let axes = &intent.program.axes;

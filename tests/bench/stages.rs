@@ -74,8 +74,7 @@ fn stages(sources: &Sources, machine: &Machine, times: &mut Times) {
     let (tolerance, form) = (machine.tolerance, motion.form);
     let (intent, program) = times.stage("passes", || {
         let intent = pass::place::place(intent, &machine).unwrap_or_else(|error| told(error));
-        let intent =
-            pass::settle::settle(&intent, form, false, tolerance).unwrap_or_else(|error| told(error));
+        let intent = pass::settle::settle(intent, form, false, tolerance).unwrap_or_else(|error| told(error));
         let program = pass::interpolate::interpolate(&intent, form, &machine, (tolerance, tolerance), true)
             .unwrap_or_else(|error| told(error));
         let program =

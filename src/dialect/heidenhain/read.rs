@@ -67,8 +67,14 @@ struct Block {
     feed: Option<Decimal>,
     rapid: bool,
     spline: bool,
-    /// DR of C.
+    /// DR of C and CP.
     rotation: Option<Sense>,
+    /// Whether it is CP.
+    polar: bool,
+    /// IPA of CP, degrees.
+    turn: Option<Decimal>,
+    /// IZ of CP, in units of the last decimal.
+    rise: Option<i64>,
 }
 
 impl Block {
@@ -83,6 +89,9 @@ impl Block {
             rapid: false,
             spline,
             rotation: None,
+            polar: false,
+            turn: None,
+            rise: None,
         }
     }
 
@@ -108,6 +117,8 @@ struct Reader<'t, 'm> {
     unmarked: Option<Span>,
     /// The centre that CC stated, in X and Y.
     center: Option<[i64; 2]>,
+    /// Whether X and Y stand where a CP left them, which is no place in decimals.
+    loose: [bool; 2],
 }
 
 /// Reads a program.
@@ -122,6 +133,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         gap: None,
         unmarked: None,
         center: None,
+        loose: [false; 2],
     };
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
@@ -157,7 +169,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             continue;
         }
         match keyword {
-            "L" | "SPL" | "CC" | "C" => reader.block(keyword, body, start, &line, span),
+            "L" | "SPL" | "CC" | "C" | "CP" => reader.block(keyword, body, start, &line, span),
             _ => match body.strip_prefix(';').or_else(|| body.strip_prefix('*')) {
                 Some(comment) => reader.assembler.step(Step::Comment(comment.trim().to_owned()), span),
                 None => reader.unknown(body, start),
@@ -188,9 +200,10 @@ impl<'t> Reader<'t, '_> {
     ///
     /// `block = "L", [ blank, words ], { "~", end_of_line, words }
     ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }
-    ///     | ( "CC" | "C" ), [ blank, words ], { "~", end_of_line, words }`
+    ///     | ( "CC" | "C" | "CP" ), [ blank, words ], { "~", end_of_line, words }`
     fn block(&mut self, keyword: &str, body: &'t str, start: usize, first: &Line<'t>, mut span: Span) {
         let mut block = Block::new(keyword == "SPL");
+        block.polar = keyword == "CP";
         let known = self.assembler.diagnostics.0.len();
         let head = start..start + body.trim_end_matches(['~', ' ']).len();
         let mut text = &body[keyword.len()..];
@@ -218,6 +231,8 @@ impl<'t> Reader<'t, '_> {
         if known == self.assembler.diagnostics.0.len() {
             match keyword {
                 "CC" => self.center(&block, head),
+                "CP" => self.helix(&block, first.number, head, span),
+                _ if !self.is_exact(&block, keyword == "C", head.clone()) => {}
                 "C" => self.arc(&block, first.number, head, span),
                 _ => self.meant(&block, first.number, head, span),
             }
@@ -271,6 +286,7 @@ impl<'t> Reader<'t, '_> {
                 }
             }
             Word::Step(letter, value) => self.step(letter, value, range, block),
+            Word::Turn(value) => self.turn(value, range, block),
             Word::FeedParameter(_) if block.feed.is_some() || block.rapid => {
                 self.assembler.error("feed-twice", "a block has one feed", range);
             }
@@ -295,35 +311,6 @@ impl<'t> Reader<'t, '_> {
             Word::Rotation(sense) => block.rotation = Some(sense),
             Word::Other(text) => self.other(text, range),
         }
-    }
-
-    /// A step of an axis that goes round past 360 degrees.
-    fn step(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
-        let Some(axis) = self.assembler.letter(letter) else { return self.axis_unknown(letter, range) };
-        let text = format!("I{}{}", char::from(letter), signed(value));
-        if !self.assembler.wraps(axis) {
-            return self.other(&text, range);
-        }
-        if block.spline {
-            let message = format!("SPL says where it ends, not by how much it goes on, as in `{text}`");
-            return self.assembler.error("spline-step", message, range);
-        }
-        let value = self.assembler.coefficient(axis, value);
-        let to = value
-            .units(self.assembler.digits[axis])
-            .and_then(|step| self.assembler.position[axis]?.checked_add(step));
-        let Some(units) = to else {
-            let message =
-                format!("`{text}` goes on from a place that the text does not say, or has too many decimals");
-            return self.assembler.error("step-unknown", message, range);
-        };
-        if block.named().iter().any(|(other, _)| *other == axis) {
-            let message = format!("{} stands twice in this block", char::from(letter));
-            return self.assembler.error("axis-twice", message, range);
-        }
-        block.named[block.count] = (axis, units);
-        block.places[block.count] = (range.start, range.end);
-        block.count += 1;
     }
 
     fn axis_unknown(&mut self, letter: u8, range: Range<usize>) {
@@ -409,7 +396,7 @@ impl<'t> Reader<'t, '_> {
         self.assembler.diagnostics.push(
             Diagnostic::error("block-unknown", message)
                 .at(span, "")
-                .hint("L, C, CC, SPL, comments and the lines of the machine file are read"),
+                .hint("L, C, CC, CP, SPL, comments and the lines of the machine file are read"),
         );
         let mut goes_on = body.ends_with('~');
         while goes_on && let Some(next) = self.lines.next() {
@@ -426,7 +413,7 @@ impl<'t> Reader<'t, '_> {
             self.assembler.feed = block.feed;
         }
         if block.rotation.is_some() {
-            return self.assembler.error("rotation", "DR belongs to C", head);
+            return self.assembler.error("rotation", "DR belongs to C and CP", head);
         }
         match (block.spline, block.rapid) {
             (true, _) => self.spline(block, line, head, span),

@@ -2,6 +2,7 @@
 //!
 //! A word that is not understood is an error at its place.
 
+mod arcs;
 mod path;
 mod state;
 
@@ -33,6 +34,7 @@ enum Motion {
     Rapid,
     Line,
     Arc(Sense),
+    ArcBy,
     Poly,
     Bspline,
     Through(ThroughKind),
@@ -56,6 +58,8 @@ struct Block {
     pw: Option<Decimal>,
     /// I J K.
     center: [Option<Decimal>; 3],
+    /// I1 J1 K1, as places.
+    way: [Option<i64>; 3],
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -180,6 +184,7 @@ impl Reader<'_> {
             pl: None,
             pw: None,
             center: [None; 3],
+            way: [None; 3],
             feed: None,
             starts_spline: false,
         };
@@ -229,6 +234,7 @@ impl Reader<'_> {
                 }
             }
             Word::Shortest(name, value) => self.shortest(name, value, range, block),
+            Word::Way(name, value) => self.way(name, value, range, block),
             Word::Polynomial(name, values) => {
                 if COEFFICIENTS + 1 < values.len() {
                     return self.assembler.error(
@@ -344,7 +350,10 @@ impl Reader<'_> {
                 let whole = span.start as usize..span.end as usize;
                 self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
             }
-            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_)) | None => {
+            Some(
+                Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy,
+            )
+            | None => {
                 self.flush();
             }
         }
@@ -369,7 +378,12 @@ impl Reader<'_> {
         if !arc && block.center.iter().any(Option::is_some) {
             return self.assembler.error("arc-word", "I J K belong to G2 and G3", whole());
         }
-        if block.count == 0 && !block.has_polynomial && !block.center.iter().any(Option::is_some) {
+        let by = self.motion == Motion::ArcBy;
+        if !by && block.way.iter().any(Option::is_some) {
+            return self.assembler.error("arc-word", "I1 J1 K1 belong to CIP", whole());
+        }
+        let bare = block.center.iter().all(Option::is_none) && block.way.iter().all(Option::is_none);
+        if block.count == 0 && !block.has_polynomial && bare {
             if block.pl.is_some() || block.pw.is_some() {
                 self.assembler.error("spline-word", "a spline block without an axis", whole());
             }
@@ -387,6 +401,7 @@ impl Reader<'_> {
                     arc::Said { plane, sense, named: block.named(), offsets: block.center, line, span };
                 arc::read(&mut self.assembler, &said);
             }
+            Motion::ArcBy => self.arc_by(block, line, span),
             Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
         }
     }
@@ -462,7 +477,7 @@ impl Reader<'_> {
                     WrittenPoints { start: run.start, stride, units, lines: run.lines, rates: Vec::new() },
                 ))
             }
-            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) => None,
+            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy => None,
         };
         let Some(curve) = curve else { return };
         self.path_reference(&curve, span);

@@ -25,6 +25,7 @@ impl Reader<'_> {
 
     pub(super) fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
         match keyword {
+            "CIP" => self.set_motion(Motion::ArcBy),
             "POLY" => self.set_motion(Motion::Poly),
             "BSPLINE" => {
                 block.starts_spline = true;
