@@ -339,27 +339,6 @@ impl Reader<'_> {
         }
     }
 
-    /// The feed of a block holds from its own move on. A new one starts a new run of polynomial blocks; a spline is one
-    /// curve with one feed.
-    fn set_feed(&mut self, feed: Decimal, span: Span) {
-        if self.assembler.feed == Some(feed) {
-            return;
-        }
-        match self.run.as_ref().map(|run| run.motion) {
-            Some(Motion::Bspline | Motion::Through(_)) => {
-                let whole = span.start as usize..span.end as usize;
-                self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
-            }
-            Some(
-                Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy,
-            )
-            | None => {
-                self.flush();
-            }
-        }
-        self.assembler.feed = Some(feed);
-    }
-
     /// The move that a block makes.
     fn moved(&mut self, block: &Block, line: u32, span: Span) {
         let whole = || span.start as usize..span.end as usize;

@@ -48,6 +48,9 @@ impl Reader<'_, '_> {
             return self.rise(axis, value, range, block);
         }
         let text = format!("I{}{}", char::from(letter), signed(value));
+        if axis == 2 && !self.assembler.wraps(axis) {
+            return self.assembler.error("arc-word", format!("`{text}` belongs to CP"), range);
+        }
         if !self.assembler.wraps(axis) {
             return self.other(&text, range);
         }
