@@ -92,10 +92,12 @@ impl Summary {
             });
         }
         if setup.home.is_empty() {
-            notes.push(
-                "no axis goes home: the tool is changed where the machine stands (no [axis] home in the machine file)"
-                    .to_owned(),
-            );
+            // CL data and jobs say every move; a cutter asks for its home, and the machine file says where that is.
+            let why = match intent.logarithmic().next() {
+                Some(_) => "the machine stands (no [axis] home in the machine file)",
+                None => "the moves of the input leave it",
+            };
+            notes.push(format!("no axis goes home: the tool is changed where {why}"));
         }
         if intent.logarithmic().next().is_some() {
             notes.push(
