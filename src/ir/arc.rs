@@ -58,7 +58,8 @@ impl WrittenArc {
 /// s + ( c_v b² − b_v c²,  b_u c² − c_u b² ) / (2 b × c)
 /// ```
 ///
-/// Differences of decimals are whole numbers, so that all but the last division is exact.
+/// Differences of decimals are whole numbers, so that all but the last division is exact; none too where they are too large
+/// for that.
 pub fn through(
     plane: Plane,
     digits: &[u8; MAX_AXES],
@@ -67,7 +68,7 @@ pub fn through(
     e: &Units,
 ) -> Option<(Sense, [f64; 2])> {
     let [u, v, _] = plane.axes();
-    // In units of the smaller decimal of both. Below 10⁵ mm with nine decimals the products stay below 10⁴³ / 10⁶.
+    // In units of the smaller decimal of both. Ways up to 2·10⁵ mm with six decimals make products of 10³⁴.
     let most = digits[u].max(digits[v]);
     let scaled = |to: &Units, axis: usize| {
         let way = i128::from(to[axis]) - i128::from(s[axis]);
