@@ -189,7 +189,7 @@ fn by_way(from: Point, way: Point, to: Point) -> Vec<Point> {
 fn run(dialect: &str, text: &str) -> Vec<Point> {
     let mut at: Point = [0.0; 3];
     let mut path = Vec::new();
-    let (mut mode, mut plane, mut about) = (String::new(), [0, 1, 2], [0.0; 2]);
+    let (mut mode, mut plane, mut about) = ("", [0, 1, 2], [0.0; 2]);
     for line in text.lines().filter(|line| !line.contains([';', '(', '%']) || line.contains("AC(")) {
         let mut words: Vec<&str> = line.split_whitespace().collect();
         if words.first().is_some_and(|word| word.trim_start_matches('N').parse::<u32>().is_ok()) {
@@ -202,14 +202,14 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
             if !matches!(words.first(), Some(&("L" | "CC" | "C" | "CP"))) {
                 continue;
             }
-            mode = words.remove(0).to_owned();
+            mode = words.remove(0);
         }
         for word in words {
             match word {
                 "G17" => plane = [0, 1, 2],
                 "G18" => plane = [2, 0, 1],
                 "G19" => plane = [1, 2, 0],
-                "G0" | "G1" | "G2" | "G3" | "CIP" => mode = word.to_owned(),
+                "G0" | "G1" | "G2" | "G3" | "CIP" => mode = word,
                 "FMAX" => rapid = true,
                 "DR+" | "DR-" => clockwise = word == "DR-",
                 _ => {
@@ -234,7 +234,7 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
         }
         let [u, v, w] = plane;
         let from = at;
-        match mode.as_str() {
+        match mode {
             "CC" => {
                 about = [to[0], to[1]];
                 continue;
