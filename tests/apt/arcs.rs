@@ -371,20 +371,22 @@ fn damaged_arcs_of_every_plane_are_refused() {
     }
 }
 
+/// What a program is refused with where one text stands in it for another.
+fn refusal((input, text): (&str, &str), machine: &Machine, (from, to): (&str, &str)) -> &'static str {
+    assert!(text.contains(from), "{text}");
+    let mut sources = Sources::new(Source::new("input.cl", input));
+    let id = sources.push(Source::new("program", text.replacen(from, to, 1)));
+    let language = front::find("creo").expect("creo");
+    verify_program(&sources, language, id, machine, &Options::default()).expect_err(to).0[0].id
+}
+
 /// Behind a helix by an angle the control stands at no place in decimals: the next path has to name X and Y.
 #[test]
 fn a_path_behind_a_helix_names_where_it_ends() {
     let machine = Machine::built_in("heidenhain").expect("heidenhain");
     let case = &CASES[7];
     let text = program("creo", &case.text(), &machine).expect("a program").text;
-    let language = front::find("creo").expect("creo");
-    let refused = |from: &str, to: &str| {
-        assert!(text.contains(from), "{text}");
-        let mut sources = Sources::new(Source::new("input.cl", case.text()));
-        let id = sources.push(Source::new("program", text.replacen(from, to, 1)));
-        let errors = verify_program(&sources, language, id, &machine, &Options::default()).expect_err(to);
-        errors.0[0].id
-    };
+    let refused = |from, to| refusal((&case.text(), &text), &machine, (from, to));
     assert_eq!(refused("L X+40 Y-30", "L X+40"), "helix-end");
     assert_eq!(refused("IPA+126.8699", "IPA+486.8699"), "helix");
     assert_eq!(refused("IPA+126.8699", "IPA-126.8699"), "helix");
@@ -416,13 +418,8 @@ fn a_circle_behind_a_helix_is_a_whole_one() {
         assert!((turned - whole).abs() < 2e-6, "{}: {turned} {whole}", dialect.name);
         if dialect.name == "heidenhain" {
             assert!(output.text.contains("CP IPA+360 DR+"), "{}", output.text);
-            let other = output.text.replacen("CP IPA+360 DR+", "C X+2 Y+4 DR+", 1);
-            let mut sources = Sources::new(Source::new("input.cl", text.clone()));
-            let id = sources.push(Source::new("program", other));
-            let language = front::find("creo").expect("creo");
-            let errors =
-                verify_program(&sources, language, id, &machine, &Options::default()).expect_err("C");
-            assert_eq!(errors.0[0].id, "helix-end");
+            let other = ("CP IPA+360 DR+", "C X+2 Y+4 DR+");
+            assert_eq!(refusal((&text, &output.text), &machine, other), "helix-end");
         }
     }
 }
@@ -432,14 +429,7 @@ fn a_place_on_the_way_makes_an_arc() {
     let machine = Machine::built_in("sinumerik").expect("sinumerik");
     let case = &CASES[2];
     let text = program("creo", &case.text(), &machine).expect("a program").text;
-    let language = front::find("creo").expect("creo");
-    let refused = |from: &str, to: &str| {
-        assert!(text.contains(from), "{text}");
-        let mut sources = Sources::new(Source::new("input.cl", case.text()));
-        let id = sources.push(Source::new("program", text.replacen(from, to, 1)));
-        let errors = verify_program(&sources, language, id, &machine, &Options::default()).expect_err(to);
-        errors.0[0].id
-    };
+    let refused = |from, to| refusal((&case.text(), &text), &machine, (from, to));
     assert_eq!(refused(" J1=AC(2)", ""), "arc-way");
     assert_eq!(refused("J1=AC(2)", "J1=AC(3)"), "arc-plane");
     assert_eq!(refused("J1=AC(2)", "L1=AC(2)"), "word-unknown");

@@ -276,13 +276,7 @@ impl<'t> Reader<'t, '_> {
                     return self.axis_unknown(letter, range);
                 };
                 if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                    if block.named().iter().any(|(other, _)| *other == axis) {
-                        let message = format!("{} stands twice in this block", char::from(letter));
-                        return self.assembler.error("axis-twice", message, range);
-                    }
-                    block.named[block.count] = (axis, units);
-                    block.places[block.count] = (range.start, range.end);
-                    block.count += 1;
+                    self.name_axis(block, (axis, letter), units, range);
                 }
             }
             Word::Step(letter, value) => self.step(letter, value, range, block),
@@ -311,6 +305,18 @@ impl<'t> Reader<'t, '_> {
             Word::Rotation(sense) => block.rotation = Some(sense),
             Word::Other(text) => self.other(text, range),
         }
+    }
+
+    /// A block names where an axis goes, once.
+    #[inline]
+    fn name_axis(&mut self, block: &mut Block, (axis, letter): (usize, u8), units: i64, range: Range<usize>) {
+        if block.named().iter().any(|(other, _)| *other == axis) {
+            let message = format!("{} stands twice in this block", char::from(letter));
+            return self.assembler.error("axis-twice", message, range);
+        }
+        block.named[block.count] = (axis, units);
+        block.places[block.count] = (range.start, range.end);
+        block.count += 1;
     }
 
     fn axis_unknown(&mut self, letter: u8, range: Range<usize>) {

@@ -67,13 +67,7 @@ impl Reader<'_, '_> {
                 format!("`{text}` goes on from a place that the text does not say, or has too many decimals");
             return self.assembler.error("step-unknown", message, range);
         };
-        if block.named().iter().any(|(other, _)| *other == axis) {
-            let message = format!("{} stands twice in this block", char::from(letter));
-            return self.assembler.error("axis-twice", message, range);
-        }
-        block.named[block.count] = (axis, units);
-        block.places[block.count] = (range.start, range.end);
-        block.count += 1;
+        self.name_axis(block, (axis, letter), units, range);
     }
 
     /// IPA: how far a CP turns.
