@@ -200,47 +200,24 @@ pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling
     } else if spelling.sign_always {
         out.push(b'+');
     }
-    let magnitude = units.unsigned_abs();
-    let (whole, mut fraction) = split(magnitude, digits);
     let mut buffer = itoa::Buffer::new();
-    if whole != 0 || fraction == 0 || spelling.leading_zero {
-        out.extend_from_slice(buffer.format(whole).as_bytes());
+    let text = buffer.format(units.unsigned_abs()).as_bytes();
+    let decimals = usize::from(digits);
+    let (whole, mut fraction) = text.split_at(text.len().saturating_sub(decimals));
+    while let [rest @ .., b'0'] = fraction {
+        fraction = rest;
     }
-    if fraction == 0 {
-        if spelling.point_always {
-            out.push(b'.');
-        }
-        return;
+    if whole.is_empty() && (fraction.is_empty() || spelling.leading_zero) {
+        out.push(b'0');
     }
-    out.push(b'.');
-    let start = out.len();
-    out.resize(start + usize::from(digits), b'0');
-    let mut end = out.len();
-    let mut trailing = true;
-    for place in (start..end).rev() {
-        let digit = (fraction % 10) as u8;
-        fraction /= 10;
-        if trailing && digit == 0 {
-            end = place;
-        } else {
-            trailing = false;
-            out[place] = b'0' + digit;
-        }
-    }
-    out.truncate(end);
-}
-
-/// The whole part and the fraction of `magnitude` / 10^`digits`. A division by a constant is a multiplication, and
-/// controls have four decimals or six.
-#[inline]
-fn split(magnitude: u64, digits: u8) -> (u64, u64) {
-    match digits {
-        4 => (magnitude / 10_000, magnitude % 10_000),
-        6 => (magnitude / 1_000_000, magnitude % 1_000_000),
-        _ => {
-            let scale = power_of_ten(digits) as u64;
-            (magnitude / scale, magnitude % scale)
-        }
+    out.extend_from_slice(whole);
+    if !fraction.is_empty() {
+        out.push(b'.');
+        // What is below a tenth has zeros behind the point.
+        out.extend(std::iter::repeat_n(b'0', decimals.saturating_sub(text.len())));
+        out.extend_from_slice(fraction);
+    } else if spelling.point_always {
+        out.push(b'.');
     }
 }
 

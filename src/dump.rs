@@ -1,7 +1,8 @@
 //! Programs as text, to be looked at: one step a line, numbers in full precision.
 
 use crate::ir::{
-    Auxiliary, Curve, Cut, Decimals, Described, Intent, Method, Polyline, Role, Shift, Step, Units, Written,
+    ArcBy, Auxiliary, Curve, Cut, Decimals, Described, Intent, Method, Polyline, Role, Shift, Step, Units,
+    Written,
 };
 use crate::units::{Axes, Position};
 use std::fmt::{Display, Write as _};
@@ -110,16 +111,18 @@ pub fn decimals(decimals: &Decimals) -> String {
             }
             Written::Arc(arc) => {
                 let [u, v, _] = arc.plane.axes();
-                let center = [(arc.center[0], u), (arc.center[1], v)]
-                    .map(|(units, i)| crate::decimal::units_to_f64(units, decimals.digits[i]));
-                let _ = writeln!(
-                    text,
-                    "arc {:?} {:?} from {} to {} about {center:?}",
-                    arc.plane,
-                    arc.sense,
-                    at(&arc.start),
-                    at(&arc.end)
-                );
+                let about = |center: [i64; 2]| {
+                    let center = [(center[0], u), (center[1], v)]
+                        .map(|(units, i)| crate::decimal::units_to_f64(units, decimals.digits[i]));
+                    format!("about {center:?}")
+                };
+                let by = match arc.by {
+                    ArcBy::Center(center) => about(center),
+                    ArcBy::Way(place) => format!("by {}", at(&place)),
+                    ArcBy::Turn(center, degrees) => format!("{} by {degrees} degrees", about(center)),
+                };
+                let (from, to) = (at(&arc.start), at(&arc.end));
+                let _ = writeln!(text, "arc {:?} {:?} from {from} to {to} {by}", arc.plane, arc.sense);
             }
             Written::Polynomial(polynomial) => {
                 let _ = writeln!(text, "polynomial from {}", at(&polynomial.start));

@@ -10,9 +10,13 @@
 //! Every cut carries its feed and every move its whole end point. Modes exist only in text.
 //! A [`Step::Comment`] starts a section: writers forget all modal state there, so that a program can be restarted.
 
+mod arc;
+
+pub use arc::{ArcBy, WrittenArc, sweep, through, turned_end};
+
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
-use crate::geom::arc::{Arc, Plane, Sense};
+use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::{LogCurve, Measure};
@@ -426,23 +430,6 @@ impl WrittenPoints {
             point
         })
     }
-}
-
-/// An arc, or one turn of a helix at most.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WrittenArc {
-    /// Its plane.
-    pub plane: Plane,
-    /// Which way round.
-    pub sense: Sense,
-    /// Where it starts.
-    pub start: Units,
-    /// Where it ends; where it starts, in the plane, for a whole turn.
-    pub end: Units,
-    /// The centre, in the plane's first and second axis.
-    pub center: [i64; 2],
-    /// The line of the text that it came from, or 0.
-    pub line: u32,
 }
 
 /// Polynomial blocks, joined end to start.

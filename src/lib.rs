@@ -145,7 +145,7 @@ pub fn compile(
             chosen.value
         }
     };
-    let intent = pass::settle::settle(&intent, motion.form, asked.is_some(), tolerance)?;
+    let intent = pass::settle::settle(intent, motion.form, asked.is_some(), tolerance)?;
     warnings.extend(overrun_without_steps(&intent));
     // Rounding costs something. What is left of the tolerance is for the fit; where the whole turns out too dear,
     // the fit is made finer. Lines are never refined: their points are asked for as they are.
@@ -288,7 +288,7 @@ pub fn verify_program(
     let reading = (machine.dialect.read)(text, program, &machine)?;
     // Whether lines were asked for or chosen cannot be seen, and matters for straight paths only: one line or many.
     let form = form_of(&reading.value.decimals);
-    let settle = |asked| pass::settle::settle(&intent, form, asked, tolerance);
+    let settle = |asked| pass::settle::settle(intent.clone(), form, asked, tolerance);
     let check = |intent: &Intent| verify::verify(intent, &reading.value, text, program, &machine, tolerance);
     let chosen = settle(false)?;
     let (intent, report) = match check(&chosen) {

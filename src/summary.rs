@@ -92,10 +92,12 @@ impl Summary {
             });
         }
         if setup.home.is_empty() {
-            notes.push(
-                "no axis goes home: the tool is changed where the machine stands (no [axis] home in the machine file)"
-                    .to_owned(),
-            );
+            // CL data and jobs say every move; a cutter asks for its home, and the machine file says where that is.
+            let why = match intent.logarithmic().next() {
+                Some(_) => "the machine stands (no [axis] home in the machine file)",
+                None => "the moves of the input leave it",
+            };
+            notes.push(format!("no axis goes home: the tool is changed where {why}"));
         }
         if intent.logarithmic().next().is_some() {
             notes.push(
@@ -113,8 +115,7 @@ impl Summary {
             name: intent.program.name.clone(),
             machine: machine.name.clone(),
             motion: motion.map(str::to_owned),
-            // A continued block goes on in indented lines.
-            blocks: text.lines().filter(|line| !line.starts_with(' ')).count(),
+            blocks: blocks(text),
             path_blocks: report.map(|r| r.path_blocks),
             cutting_length: report.map(|r| r.cutting_length),
             cutting_minutes: report.map(|r| r.minutes),
@@ -239,6 +240,13 @@ impl Summary {
         }
         serde_json::to_string(&Line { summary: self }).unwrap_or_default() + "\n"
     }
+}
+
+/// How many blocks a text has: a continued block goes on in indented lines.
+fn blocks(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let starts = std::iter::once(0).chain(memchr::memchr_iter(b'\n', bytes).map(|end| end + 1));
+    starts.filter(|start| bytes.get(*start).is_some_and(|first| *first != b' ')).count()
 }
 
 fn plural(n: usize) -> &'static str {

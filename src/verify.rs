@@ -149,8 +149,19 @@ pub fn verify(
     let asked = report.setup.remarks(machine);
     let leading = decimals.setup.get(asked.len()..).unwrap_or_default();
     let radius = intent.radius();
-    let mut cursor =
-        Cursor { decimals, machine, text, id, at: 0, within: 0, leading, origin, radius, map: None };
+    let mut cursor = Cursor {
+        decimals,
+        machine,
+        text,
+        id,
+        at: 0,
+        within: 0,
+        leading,
+        origin,
+        radius,
+        map: None,
+        gap: 0.0,
+    };
     let mut ideal = Ideal(None);
     for located in &intent.program.steps {
         report.blocks.push(u32::from(!matches!(located.step, Step::Comment(_))));
@@ -194,7 +205,13 @@ pub fn verify(
             Step::Cut(Cut { feed, role, curve }) => {
                 cursor.skip_comments();
                 let (at, within) = (cursor.at, cursor.within);
-                let found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
+                let gap = std::mem::take(&mut cursor.gap);
+                let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
+                // The path before ends that far from where this one starts; a turn takes it along.
+                found.deviation.mm += gap;
+                if cursor.gap != 0.0 {
+                    cursor.gap += gap;
+                }
                 if !(found.deviation.mm <= tolerance) {
                     let message = format!(
                         "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
@@ -275,6 +292,8 @@ struct Cursor<'p> {
     radius: f64,
     /// The map that the bounds hold for so far.
     map: Option<Map>,
+    /// How far from its end the last path really ends, mm: a turn by an angle leads to no place in decimals.
+    gap: f64,
 }
 
 /// What one cut was found to be.

@@ -1,7 +1,7 @@
 //! Whether two bodies are the same but for where their axes count from, so that one text serves both.
 
 use crate::decimal::Decimal;
-use crate::ir::{Located, Shift, Step, Units, Written, WrittenPoints};
+use crate::ir::{ArcBy, Located, Shift, Step, Units, Written, WrittenPoints};
 use crate::units::MAX_AXES;
 
 type Read = Step<Decimal, Written>;
@@ -76,11 +76,16 @@ impl By {
             }
             (Written::Arc(a), Written::Arc(b)) => {
                 let [u, v, _] = a.plane.axes();
+                let center = |a: [i64; 2], b: [i64; 2]| [a[0] + self.by[u], a[1] + self.by[v]] == b;
                 (a.plane, a.sense) == (b.plane, b.sense)
                     && self.units(&a.start, &b.start)
                     && self.units(&a.end, &b.end)
-                    && a.center[0] + self.by[u] == b.center[0]
-                    && a.center[1] + self.by[v] == b.center[1]
+                    && match (a.by, b.by) {
+                        (ArcBy::Center(a), ArcBy::Center(b)) => center(a, b),
+                        (ArcBy::Way(a), ArcBy::Way(b)) => self.units(&a, &b),
+                        (ArcBy::Turn(a, by), ArcBy::Turn(b, other)) => center(a, b) && by == other,
+                        (ArcBy::Center(_) | ArcBy::Way(_) | ArcBy::Turn(..), _) => false,
+                    }
             }
             (
                 Written::Lines(_)

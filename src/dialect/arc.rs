@@ -13,7 +13,7 @@ use super::modal::Modal;
 use crate::decimal::{Decimal, Spelling, write_units};
 use crate::diagnostic::Diagnostic;
 use crate::geom::arc::{Plane, Sense};
-use crate::ir::{Units, Written, WrittenArc};
+use crate::ir::{ArcBy, Units, Written, WrittenArc};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::Axis;
@@ -47,8 +47,21 @@ pub fn counted_sense(machine: &Machine, plane: Plane, sense: Sense) -> Sense {
     if reversed[u] == reversed[v] { sense } else { sense.reversed() }
 }
 
-/// Writes an arc as one block. `plane` is the one in force; another is chosen in the block.
-pub fn write(modal: &mut Modal<'_>, arc: &WrittenArc, feed: Option<Decimal>, plane: &mut Option<Plane>) {
+/// The centre of an arc, where the block states it as a place.
+pub fn stated_center(arc: &WrittenArc) -> Option<[i64; 2]> {
+    match arc.by {
+        ArcBy::Center(center) => Some(center),
+        ArcBy::Way(_) | ArcBy::Turn(..) => None,
+    }
+}
+
+/// Writes an arc about a centre as one block. `plane` is the one in force; another is chosen in the block.
+pub fn write(
+    modal: &mut Modal<'_>,
+    (arc, center): (&WrittenArc, [i64; 2]),
+    feed: Option<Decimal>,
+    plane: &mut Option<Plane>,
+) {
     let [u, v, w] = arc.plane.axes();
     modal.begin("N");
     if *plane != Some(arc.plane) {
@@ -68,8 +81,8 @@ pub fn write(modal: &mut Modal<'_>, arc: &WrittenArc, feed: Option<Decimal>, pla
     }
     for i in 0..3 {
         let center = match i {
-            _ if i == u => arc.center[0],
-            _ if i == v => arc.center[1],
+            _ if i == u => center[0],
+            _ if i == v => center[1],
             _ => continue,
         };
         modal.out.push(CENTER[i]);
@@ -134,7 +147,8 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
         }
     }
     let sense = counted_sense(assembler.machine, said.plane, said.sense);
-    let arc = WrittenArc { plane: said.plane, sense, start, end, center, line: said.line };
+    let by = ArcBy::Center(center);
+    let arc = WrittenArc { plane: said.plane, sense, start, end, by, line: said.line };
     add(assembler, arc, &end, said.span);
 }
 

@@ -104,7 +104,7 @@ impl<'t> Lines<'t> {
             return None;
         }
         let rest = &self.text[self.at..];
-        let length = rest.find('\n').unwrap_or(rest.len());
+        let length = memchr::memchr(b'\n', rest.as_bytes()).unwrap_or(rest.len());
         let text = rest[..length].trim_ascii_end();
         let line = Line { number: self.number + 1, start: self.at, text, structure: false };
         self.number += 1;

@@ -52,8 +52,8 @@ pub struct Dialect {
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
     pub round: Round,
-    /// Whether it has a word for an arc in this plane, and for one that leaves the plane as a helix; others become lines.
-    pub takes_arc: fn(Plane, bool) -> bool,
+    /// What it has for an arc in this plane, or for one that leaves the plane as a helix; where it has nothing, lines.
+    pub arc: fn(Plane, bool) -> Option<ArcWord>,
     /// The words of the three components of the tool's direction.
     pub direction: [&'static str; 3],
     /// Whether it has words for the curve of a second point of the tool.
@@ -126,6 +126,17 @@ pub struct NurbsRules {
     pub greatest_weight: f64,
     /// Whether the first weight is 1 because there is no place to write it.
     pub starts_with_one: bool,
+}
+
+/// What a block says about an arc beside its end; see [`ArcBy`](crate::ir::ArcBy).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArcWord {
+    /// Its centre.
+    Center,
+    /// A place on the way. A whole turn becomes two halves.
+    Way,
+    /// Its centre and how far it turns.
+    Turn,
 }
 
 /// The forms that a curve can take on a control.

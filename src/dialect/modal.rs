@@ -235,10 +235,12 @@ impl<'m> Modal<'m> {
         if let Some(component) = self.direction.and_then(|first| i.checked_sub(first)) {
             return self.text(self.machine.dialect.direction[component]);
         }
-        let name = self.machine.axes.name(i);
-        self.text(name.as_str());
-        if 1 < name.as_str().len() {
-            self.out.push(b'=');
+        match self.machine.axes.name(i).as_bytes() {
+            [letter] => self.out.push(*letter),
+            name => {
+                self.out.extend_from_slice(name);
+                self.out.push(b'=');
+            }
         }
     }
 

@@ -83,7 +83,9 @@ fn input(sources: &Sources) -> Result<&Source, Diagnostics> {
 
 /// Whether a line of the text begins a table.
 fn has_table(text: &str, table: &str) -> bool {
-    text.trim_start_matches('\u{feff}').lines().any(|line| line.trim_start().starts_with(table))
+    let text = text.trim_start_matches('\u{feff}');
+    memchr::memmem::find_iter(text.as_bytes(), table)
+        .any(|at| text[..at].trim_end_matches([' ', '\t']).chars().next_back().is_none_or(|c| c == '\n'))
 }
 
 /// CL data of one CAM system; its text is recognised as `apt`, which finds the system.

@@ -114,6 +114,17 @@ fn direction(y: f64, x: f64) -> f64 {
     if 0.0 < x { angle } else { angle + (2.0 * half).copysign(y) }
 }
 
+/// `start`, turned by `sweep` radians about `center`, counter-clockwise being positive; the other axes as `end` has them.
+pub fn turned(plane: Plane, start: Position, end: Position, center: [f64; 2], sweep: f64) -> Position {
+    let [u, v, _] = plane.axes();
+    let (x, y) = (start[u] - center[0], start[v] - center[1]);
+    let (cos, sin) = (elementary::cos(sweep), elementary::sin(sweep));
+    let mut place = end;
+    place[u] = center[0] + x * cos - y * sin;
+    place[v] = center[1] + x * sin + y * cos;
+    place
+}
+
 impl Arc {
     /// The arc from `start` to `end` about `center` (u, v). A start that is the end in u and v is a full turn.
     ///
@@ -290,6 +301,15 @@ impl Arc {
         (low, high)
     }
 
+    /// Its first and its second half.
+    pub fn halves(&self) -> [Arc; 2] {
+        let (middle, sweep) = (self.eval(0.5), 0.5 * self.sweep);
+        [
+            Arc { end: middle, sweep, ..*self },
+            Arc { start: middle, angle: self.angle + sweep, sweep, ..*self },
+        ]
+    }
+
     /// How far a control that is given `start`, `end` and `center` may be from this arc, mm: the bound above, with some
     /// ulps for its own rounding. Infinite where that is no arc, or one the other way round.
     pub fn deviation(
@@ -304,7 +324,28 @@ impl Arc {
             return f64::INFINITY;
         }
         let Ok(other) = Arc::new(plane, sense, start, end, center) else { return f64::INFINITY };
-        let [u, v, w] = plane.axes();
+        // The sweep of `other` is about its own centre, not the stated one.
+        self.bound(&start, &end, center, other.sweep) + 2.0 * other.misfit
+    }
+
+    /// The same where the control is given `start`, `center`, how far to turn, radians, counter-clockwise being positive,
+    /// and where the other axes end; and where it ends. Infinite where it turns the other way.
+    pub fn deviation_turned(
+        &self,
+        plane: Plane,
+        start: Position,
+        end: Position,
+        center: [f64; 2],
+        sweep: f64,
+    ) -> (f64, Position) {
+        let end = turned(plane, start, end, center, sweep);
+        let alike = plane == self.plane && 0.0 < sweep * self.sweep;
+        (if alike { self.bound(&start, &end, center, sweep) } else { f64::INFINITY }, end)
+    }
+
+    /// The bound above for a control that turns by `sweep` about `center`.
+    fn bound(&self, start: &Position, end: &Position, center: [f64; 2], sweep: f64) -> f64 {
+        let [u, v, w] = self.plane.axes();
         let size = |x: f64, y: f64| (x * x + y * y).sqrt();
         let apart = size(self.center[0] - center[0], self.center[1] - center[1]);
         let radius = |p: &Position| (self.radius - size(p[u] - center[0], p[v] - center[1])).abs();
@@ -314,20 +355,14 @@ impl Arc {
             let turns = (x / TURN).round();
             (x - turns * TURN).abs()
         };
-        let first = nearest(about(&start) - self.angle);
+        let first = nearest(about(start) - self.angle);
         // The sweeps are compared without whole turns taken away: a full circle is no standstill.
-        let last = first + (other.sweep - self.sweep).abs();
+        let last = first + (sweep - self.sweep).abs();
         let along = (start[w] - self.start[w]).abs().max((end[w] - self.end[w]).abs());
         let rest = (0..MAX_AXES).filter(|i| ![u, v, w].contains(i)).fold(0.0f64, |worst, i| {
             worst.max((start[i] - self.start[i]).abs()).max((end[i] - self.end[i]).abs())
         });
-        let bound = apart
-            + radius(&start).max(radius(&end))
-            + self.radius * last
-            // The sweep of `other` is about its own centre, not the stated one.
-            + 2.0 * other.misfit
-            + along
-            + rest;
+        let bound = apart + radius(start).max(radius(end)) + self.radius * last + along + rest;
         let scale = self.radius + self.center[0].abs() + self.center[1].abs();
         bound + 64.0 * f64::EPSILON * scale
     }

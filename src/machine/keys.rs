@@ -67,6 +67,7 @@ pub const KEYS: &[Key] = &[
             Key::value("poly_degree"),
             Key::value("shared_parameter"),
             Key::value("bspline_min_blocks"),
+            Key::value("first_point"),
             Key::value("begin"),
             Key::value("end"),
         ],
@@ -294,6 +295,10 @@ pub(super) struct SplineFile {
     /// The fewest blocks of a B-spline.
     #[schemars(with = "Option<usize>")]
     pub(super) bspline_min_blocks: Option<Spanned<usize>>,
+    /// Whether the first control point of a B-spline is that of the block before, "g1", or stands in a block of its own too,
+    /// "repeat".
+    #[schemars(with = "Option<String>")]
+    pub(super) first_point: Option<Spanned<String>>,
     /// Start condition of splines through points: BAUTO, BNAT, BTAN.
     #[schemars(with = "Option<String>")]
     pub(super) begin: Option<Spanned<String>>,

@@ -203,6 +203,15 @@ pub struct Parameters {
     pub last: u32,
 }
 
+/// Where the first control point of a Sinumerik B-spline stands. Both are the same curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstPoint {
+    /// In the block before: where the tool is.
+    Before,
+    /// There and in a block of its own, as CATIA states it.
+    Repeated,
+}
+
 /// What splines a machine takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spline {
@@ -214,6 +223,8 @@ pub struct Spline {
     pub shared_parameter: bool,
     /// The fewest blocks a B-spline may have.
     pub bspline_min_blocks: usize,
+    /// Where the first control point of a B-spline stands.
+    pub first_point: FirstPoint,
     /// The word for the start condition of through-point splines.
     pub begin: String,
     /// The word for their end condition.

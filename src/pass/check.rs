@@ -116,7 +116,7 @@ fn form(decimals: &Decimals, curve: &Written, dialect: &Dialect) -> Result<usize
         Written::Lines(_) => (dialect.motion_of(Form::Lines), "straight lines"),
         Written::Arc(arc) => {
             let [.., w] = arc.plane.axes();
-            let taken = (dialect.takes_arc)(arc.plane, arc.start[w] != arc.end[w]);
+            let taken = (dialect.arc)(arc.plane, arc.start[w] != arc.end[w]).is_some();
             (dialect.motion_of(Form::Lines).filter(|_| taken), "arcs of this kind")
         }
         Written::Polynomial(_) => {

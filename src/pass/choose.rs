@@ -120,10 +120,10 @@ pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
 
 /// How many blocks the paths take in a form.
 fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Result<usize, Diagnostics> {
-    let settled = settle::settle(intent, form, false, tolerance)?;
+    let settled = settle::settle(intent.clone(), form, false, tolerance)?;
     // Steps are counted without being kept: there may be millions.
     let mut counted = 0;
-    let mut rest = settled.clone();
+    let mut rest = settled;
     rest.program.steps.retain(|located| {
         let Some(Cut { role: Role::Path, curve: Curve::Logarithmic(log), .. }) = located.step.cut() else {
             return true;

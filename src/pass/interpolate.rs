@@ -2,7 +2,7 @@
 //! [`approximate`](super::approximate) makes of them.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::Form;
+use crate::dialect::{ArcWord, Form};
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
@@ -66,15 +66,16 @@ pub fn interpolate(
             Step::Cut(Cut { feed, role, curve: curve @ Curve::Arc(arc) }) => {
                 let axes = &intent.program.axes;
                 // What an arc is while the tip is led no page says.
-                let taken =
-                    axes.direction().is_none() && (machine.dialect.takes_arc)(arc.plane(), arc.is_helix());
-                let curve = if taken {
-                    curve.clone()
-                } else {
-                    Curve::Lines(super::arcs::lines(arc, axes.count(), tolerance))
+                let word = (machine.dialect.arc)(arc.plane(), arc.is_helix());
+                let curves = match word.filter(|_| axes.direction().is_none()) {
+                    Some(ArcWord::Way) if arc.is_full() => arc.halves().map(Curve::Arc).to_vec(),
+                    Some(ArcWord::Center | ArcWord::Way | ArcWord::Turn) => vec![curve.clone()],
+                    None => vec![Curve::Lines(super::arcs::lines(arc, axes.count(), tolerance))],
                 };
-                let step = Step::Cut(Cut { feed: *feed, role: *role, curve });
-                steps.push(Located { step, span: located.span });
+                steps.extend(curves.into_iter().map(|curve| Located {
+                    step: Step::Cut(Cut { feed: *feed, role: *role, curve }),
+                    span: located.span,
+                }));
             }
             Step::Cut(Cut { feed, role: Role::Path, curve }) => {
                 let axes = &intent.program.axes;

@@ -21,15 +21,15 @@
 
 mod rational;
 
-use crate::decimal::{Decimal, Origin, round_units};
+use crate::decimal::{Decimal, Origin, round_units, units_to_f64};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::Form;
+use crate::dialect::{ArcWord, Form};
 use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role, Shift, Step,
-    Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    self, ArcBy, COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role,
+    Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial, turned_end,
 };
 use crate::machine::Machine;
 use crate::setup::wrapped;
@@ -50,6 +50,8 @@ struct Quantiser<'m> {
     digits: [u8; MAX_AXES],
     coefficient_digits: [u8; MAX_AXES],
     position: [Option<i64>; MAX_AXES],
+    /// Whether the control stands where a turn by an angle led it, which is no place in decimals.
+    loose: bool,
     /// Where each axis counts from.
     origin: [Origin; MAX_AXES],
     closing: bool,
@@ -87,6 +89,7 @@ pub fn quantise(
         digits,
         coefficient_digits,
         position: [None; MAX_AXES],
+        loose: false,
         origin,
         closing,
     };
@@ -206,6 +209,8 @@ impl Quantiser<'_> {
                 Step::Shift(rounded)
             }
             Step::Rapid(targets) => {
+                // The axes of turns are the first two.
+                self.loose &= ![0, 1].iter().all(|axis| targets.iter().any(|(named, _)| named == axis));
                 let mut rounded = Vec::with_capacity(targets.len());
                 for (axis, to) in targets {
                     let units = self.units(axis, to)?;
@@ -223,9 +228,10 @@ impl Quantiser<'_> {
     }
 
     fn curve(&mut self, curve: Curve, role: Role) -> Result<Written, Unwritable> {
+        let loose = std::mem::take(&mut self.loose);
         match curve {
             Curve::Lines(line) => Ok(Written::Lines(self.points(&line)?)),
-            Curve::Arc(arc) => self.arc(&arc),
+            Curve::Arc(arc) => self.arc(&arc, loose),
             Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
             Curve::Polynomial(pieces) => self.polynomial(&pieces, role == Role::Path && self.closing),
             Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
@@ -252,11 +258,13 @@ impl Quantiser<'_> {
     }
 
     /// An arc between the rounded ends. One so short that these are the same would become a whole turn: it is a line.
-    fn arc(&mut self, arc: &Arc) -> Result<Written, Unwritable> {
-        let (start, end) = (self.start(&arc.start())?, self.point(&arc.end())?);
-        let [u, v, _] = arc.plane().axes();
-        self.arrive(&end);
+    ///
+    /// One that starts at no place in decimals goes on by an angle too: with an end, a whole circle could be next to nothing.
+    fn arc(&mut self, arc: &Arc, loose: bool) -> Result<Written, Unwritable> {
+        let (start, mut end) = (self.start(&arc.start())?, self.point(&arc.end())?);
+        let [u, v, w] = arc.plane().axes();
         if !arc.is_full() && start[u] == end[u] && start[v] == end[v] && arc.sweep().abs() < 1.0 {
+            self.arrive(&end);
             let units = end[..self.machine.axes.count()].to_vec();
             let stride = self.machine.axes.count();
             return Ok(Written::Lines(WrittenPoints {
@@ -267,8 +275,48 @@ impl Quantiser<'_> {
                 rates: Vec::new(),
             }));
         }
+        let (plane, sense) = (arc.plane(), arc.sense());
         let center = [self.units(u, arc.center()[0])?, self.units(v, arc.center()[1])?];
-        Ok(Written::Arc(WrittenArc { plane: arc.plane(), sense: arc.sense(), start, end, center, line: 0 }))
+        let word = (self.machine.dialect.arc)(plane, start[w] != end[w]);
+        let by = match word.map(|word| if loose { ArcWord::Turn } else { word }) {
+            None | Some(ArcWord::Center) => ArcBy::Center(center),
+            Some(ArcWord::Way) => {
+                let mut way = self.point(&arc.eval(0.5))?;
+                way[w] = start[w];
+                ArcBy::Way(way)
+            }
+            Some(ArcWord::Turn) => {
+                let stated = WrittenArc { plane, sense, start, end, by: ArcBy::Center(center), line: 0 };
+                let sweep = self.bounded(arc, &stated).ok_or(Unwritable)?.0.sweep().abs();
+                let degrees =
+                    Decimal::round(sweep * DEGREES, self.machine.digits.rotary).ok_or(Unwritable)?;
+                end = turned_end(plane, &self.digits, (&start, &end), center, ir::sweep(sense, degrees))
+                    .ok_or(Unwritable)?;
+                self.loose = true;
+                ArcBy::Turn(center, degrees)
+            }
+        };
+        let written = WrittenArc { plane, sense, start, end, by, line: 0 };
+        // Places on a flat arc say little about its centre; lines then say more.
+        let known = self.bounded(arc, &written).is_some_and(|(_, bound)| bound <= self.tolerance);
+        if matches!(by, ArcBy::Way(_)) && !known {
+            return Ok(Written::Lines(self.points(&super::arcs::lines(
+                arc,
+                self.machine.axes.count(),
+                0.5 * self.tolerance,
+            ))?));
+        }
+        self.arrive(&end);
+        Ok(Written::Arc(written))
+    }
+
+    /// The arc that decimals mean, and how far it is from the one asked, mm.
+    fn bounded(&self, asked: &Arc, written: &WrittenArc) -> Option<(Arc, f64)> {
+        let place = |units: &Units| std::array::from_fn(|i| units_to_f64(units[i], self.digits[i]));
+        let (start, end) = (place(&written.start), place(&written.end));
+        let center = written.center(&self.digits)?;
+        let arc = Arc::new(written.plane, written.sense, start, end, center).ok()?;
+        Some((arc, asked.deviation(written.plane, written.sense, start, end, center)))
     }
 
     fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {
@@ -319,10 +367,7 @@ impl Quantiser<'_> {
         let cubic = piece.raised_to(3);
         let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|i| cubic.points[i][axis]);
         let digits = self.digits[axis];
-        let (delta_s, delta_e) = (
-            crate::decimal::units_to_f64(start, digits) - p0,
-            crate::decimal::units_to_f64(end, digits) - p3,
-        );
+        let (delta_s, delta_e) = (units_to_f64(start, digits) - p0, units_to_f64(end, digits) - p3);
         let k1 = 3.0 * (p2 - p3);
         let k2 = 3.0 * (p1 - 2.0 * p2 + p3) + 3.0 * (delta_s - delta_e);
         let gap = Decimal::new(start, digits).minus(Decimal::new(end, digits)).ok_or(Unwritable)?;

@@ -16,12 +16,11 @@ pub const MAX_STEP: f64 = 0.2;
 ///
 /// # Errors
 /// The Δl that would hold the tolerance makes too many points.
-pub fn settle(intent: &Intent, form: Form, asked: bool, tolerance: f64) -> Result<Intent, Diagnostics> {
-    let mut settled = intent.clone();
+pub fn settle(mut intent: Intent, form: Form, asked: bool, tolerance: f64) -> Result<Intent, Diagnostics> {
     // Flutes differ in their index only, so one search serves them all.
     let mut found: Option<(Logarithmic, f64)> = None;
     let mut points = 0.0;
-    for located in &mut settled.program.steps {
+    for located in &mut intent.program.steps {
         let Step::Cut(cut) = &mut located.step else { continue };
         let Curve::Logarithmic(log) = &mut cut.curve else { continue };
         log.method = match log.method {
@@ -52,7 +51,7 @@ pub fn settle(intent: &Intent, form: Form, asked: bool, tolerance: f64) -> Resul
             return Err(too_many(&StepError::TooManyPoints { points }).into());
         }
     }
-    Ok(settled)
+    Ok(intent)
 }
 
 /// The largest Δl that holds the tolerance, mm: at most the Δl that was asked for, or else [`MAX_STEP`].

@@ -5,20 +5,14 @@ use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
 use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
-use crate::ir::{Auxiliary, Decimals, Step, Written, WrittenArc, WrittenPoints};
+use crate::ir::{ArcBy, Auxiliary, Decimals, Step, Written, WrittenArc, WrittenPoints, sweep};
 use crate::pass::arcs::sagitta;
-use crate::units::Position;
-
-/// The centre of an arc in decimals, mm.
-fn center(decimals: &Decimals, arc: &WrittenArc) -> [f64; 2] {
-    let [u, v, _] = arc.plane.axes();
-    [units_to_f64(arc.center[0], decimals.digits[u]), units_to_f64(arc.center[1], decimals.digits[v])]
-}
+use crate::units::{MAX_AXES, Position};
 
 /// The arc that decimals mean; none where it has no radius.
 pub fn to_arc(decimals: &Decimals, arc: &WrittenArc) -> Option<Arc> {
     let (start, end) = (decimals.position(&arc.start), decimals.position(&arc.end));
-    Arc::new(arc.plane, arc.sense, start, end, center(decimals, arc)).ok()
+    Arc::new(arc.plane, arc.sense, start, end, arc.center(&decimals.digits)?).ok()
 }
 
 fn distance(p: &Position, q: &Position) -> f64 {
@@ -29,13 +23,23 @@ impl Cursor<'_> {
     /// An arc, or the lines that stand for it.
     pub(super) fn arc(&mut self, asked: &Arc, written: &Written) -> Result<Found, Diagnostics> {
         match written {
-            Written::Arc(arc) => {
-                let (start, end) = (self.decimals.position(&arc.start), self.decimals.position(&arc.end));
-                let mm = asked.deviation(arc.plane, arc.sense, start, end, center(self.decimals, arc));
-                if mm == f64::INFINITY {
-                    return Err(self.differs("arc-differs", "this arc has another plane or sense".to_owned()));
+            Written::Arc(WrittenArc { by: ArcBy::Way(_), .. }) if asked.is_full() => {
+                let feed = self.written()?.feed;
+                let mut worst = 0.0f64;
+                for half in asked.halves() {
+                    let cut = self.written()?;
+                    let Written::Arc(arc) = &cut.curve else {
+                        return Err(self.differs("step-differs", "here half a circle was asked".to_owned()));
+                    };
+                    if cut.feed != feed {
+                        return Err(self.differs("feed-differs", "the feed changes in a circle".to_owned()));
+                    }
+                    worst = worst.max(self.arc_block(&half, arc)?);
                 }
-                self.advance();
+                Ok(found(asked, worst, 2))
+            }
+            Written::Arc(arc) => {
+                let mm = self.arc_block(asked, arc)?;
                 Ok(found(asked, mm, 1))
             }
             Written::Lines(points) => self.arc_of_lines(asked, points),
@@ -45,31 +49,53 @@ impl Cursor<'_> {
         }
     }
 
+    /// One block against the arc that it is to be, mm.
+    fn arc_block(&mut self, asked: &Arc, arc: &WrittenArc) -> Result<f64, Diagnostics> {
+        let (start, end) = (self.decimals.position(&arc.start), self.decimals.position(&arc.end));
+        let mm = match (arc.center(&self.decimals.digits), arc.by) {
+            (None, _) => f64::INFINITY,
+            (Some(center), ArcBy::Center(_) | ArcBy::Way(_)) => {
+                asked.deviation(arc.plane, arc.sense, start, end, center)
+            }
+            (Some(center), ArcBy::Turn(_, degrees)) => {
+                let sweep = sweep(arc.sense, degrees);
+                let (mm, end) = asked.deviation_turned(arc.plane, start, end, center, sweep);
+                self.gap = distance(&end, &asked.end());
+                mm
+            }
+        };
+        if mm == f64::INFINITY {
+            return Err(self.differs("arc-differs", "this arc has another plane or sense".to_owned()));
+        }
+        self.advance();
+        Ok(mm)
+    }
+
     /// Lines that stand for an arc, one after the other up to its end. Each ends where it should at its share of the
     /// arc, but for what is found; between, a chord leaves the arc by its sagitta.
     fn arc_of_lines(&mut self, asked: &Arc, points: &WrittenPoints) -> Result<Found, Diagnostics> {
         let end = asked.end();
-        let rest = points.count() - self.within;
         // The lines may run on into others of the same feed, so that the end of the arc is looked for.
         let slack =
             0.5 * (0..3).map(|i| units_to_f64(1, self.decimals.digits[i])).fold(0.0, f64::max) * 1.0001;
         let near = |p: &Position| (0..3).all(|i| (p[i] - end[i]).abs() <= slack);
-        let all: Vec<Position> = points
-            .points()
-            .skip(self.within)
-            .take(rest)
-            .map(|units| self.decimals.position(&units))
-            .collect();
+        let all = || {
+            let rest = points.units[self.within * points.stride..].chunks_exact(points.stride);
+            rest.map(|chunk| {
+                let mut units = [0; MAX_AXES];
+                units[..chunk.len()].copy_from_slice(chunk);
+                self.decimals.position(&units)
+            })
+        };
         // A whole turn ends where it starts, so that its first lines do not count.
         let least = if asked.is_full() { 2 } else { 0 };
-        let Some(last) = (least..all.len()).find(|k| near(&all[*k])) else {
+        let Some(last) = all().enumerate().skip(least).find(|(_, p)| near(p)).map(|(last, _)| last) else {
             return Err(self.differs("less-than-asked", "the end of an arc is missing here".to_owned()));
         };
         let count = last + 1;
-        let worst = all[..count]
-            .iter()
-            .enumerate()
-            .fold(0.0f64, |worst, (i, p)| worst.max(distance(p, &asked.eval((i + 1) as f64 / count as f64))));
+        let worst = all().take(count).enumerate().fold(0.0f64, |worst, (i, p)| {
+            worst.max(distance(&p, &asked.eval((i + 1) as f64 / count as f64)))
+        });
         let mm = worst + sagitta(asked.radius(), asked.sweep().abs() / count as f64);
         self.within += count;
         self.leave(points);

@@ -218,8 +218,8 @@ fn the_map_leads_from_blocks_to_lines() {
             |from: usize| seen.iter().filter(move |(_, first, _)| *first == from).map(|(line, ..)| *line);
         assert!(find(8).all(|line| line.contains("X10") || line.contains("X+10")), "{seen:?}");
         assert_eq!(find(8).count(), 1);
-        // The arc: one block, or lines where the control has no helix.
-        assert_eq!(find(9).count() == 1, dialect.name != "heidenhain", "{seen:?}");
+        // The helix: one block.
+        assert_eq!(find(9).count(), 1, "{seen:?}");
         assert!(seen.iter().any(|(_, first, last)| (*first, *last) == (9, 10)), "{seen:?}");
         assert!(find(11).all(|line| line.contains("X0") || line.contains("X+0")), "{seen:?}");
         assert!(find(12).any(|line| line.contains("1.5") || line.contains("CYCL")), "{seen:?}");

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `golden` | `fixtures/apt/<case>/`: an input and every machine's program, side by side, as bytes |
 //! | `statements` | every statement of the language: read, warned or refused |
+//! | `arcs` | arcs and helices of every plane, evaluated from the text; damaged ones |
 //! | `meaning` | arcs, cycles, feeds and units by their closed forms |
 //! | `orientation` | five axes: tip and direction, second curves, damage |
 //! | `splines` | the NURBS forms of CATIA, NX and Creo |
 //! | `bad` | input that is none, and what is told |
 //! | `corpus` | real files of CAM systems, where they are there |
 
+mod arcs;
 mod bad;
 mod corpus;
 mod golden;

@@ -297,3 +297,38 @@ fn figures_5_and_6_are_one_path_of_one_input() {
         }
     }
 }
+
+/// The first control point stands before the spline, or in it too: one curve, two spellings of the third seed's figures.
+#[test]
+fn the_first_control_point_may_stand_in_the_spline_too() {
+    let input = catia([1.0; 7]);
+    let first = |output: &Output| {
+        let mut lines = output.text.lines().skip_while(|line| !line.contains("BSPLINE"));
+        let mut line =
+            || lines.next().and_then(|line| line.split_once(' ')).map_or("", |(_, words)| words).to_owned();
+        [line(), line()]
+    };
+    let plain = in_motion("catia", &input, &Machine::built_in("sinumerik").expect("sinumerik"), "bspline");
+    let repeats = crate::support::machine("extends = \"sinumerik\"\n[spline]\nfirst_point = \"repeat\"\n");
+    let repeated = in_motion("catia", &input, &repeats, "bspline");
+    assert_eq!(first(&plain), ["BSPLINE SD=3 X10 Y0 PL=0", "X30 Y24 PL=30"]);
+    assert_eq!(first(&repeated), ["BSPLINE SD=3 X0 Y0 PL=0", "X10 Y0 PL=0"]);
+    for (output, machine) in
+        [(&plain, Machine::built_in("sinumerik").expect("sinumerik")), (&repeated, repeats)]
+    {
+        assert!(output.report.as_ref().is_some_and(|report| report.deviation.mm < 1e-10));
+        let mut sources = Sources::new(Source::new("input.cl", input.as_str()));
+        let id = sources.push(Source::new("program", output.text.as_str()));
+        let language = front::find("catia").expect("catia");
+        let verified = verify_program(&sources, language, id, &machine, &Options::default());
+        assert!(verified.is_ok(), "{verified:?}");
+    }
+    // Rational: the weight of the first point stands there too.
+    let weighted = in_motion(
+        "catia",
+        &catia([1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 1.0]),
+        &crate::support::machine("extends = \"sinumerik\"\n[spline]\nfirst_point = \"repeat\"\n"),
+        "bspline",
+    );
+    assert!(first(&weighted)[0].starts_with("BSPLINE SD=3 X0 Y0 PL=0 PW=1"), "{:?}", first(&weighted));
+}

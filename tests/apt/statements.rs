@@ -15,7 +15,7 @@ enum Becomes {
 }
 use Becomes::{Read, Refused, Warned};
 
-const HEAD: &str = "UNITS/MM\nFEDRAT/100,MMPM\nSPINDL/500,RPM,CLW\nRAPID\nGOTO/0,0,10\n";
+const HEAD: &str = "UNITS/MM\nLOADTL/1\nFEDRAT/100,MMPM\nSPINDL/500,RPM,CLW\nRAPID\nGOTO/0,0,10\n";
 /// A statement behind the first move, or with `^` before all else.
 fn fixture(statement: &str) -> String {
     match statement.strip_prefix('^') {
@@ -55,12 +55,14 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     // tool
     ("iso", "CUTTER/16,0,8,4.6,30,0,50", Read("comment CUTTER 16,0,8,4.6,30,0,50")),
     ("nx", "TLDATA/MILL,10,0.5,75,0,0", Read("comment TLDATA MILL,10,0.5,75,0,0")),
+    ("nx", "TLDATA/DRILL,MILL,8,0,100,118,60", Read("comment TLDATA DRILL,MILL,8,0,100,118,60")),
     ("nx", "TLDATA/WEDM,0.2,10,0", Refused("wire")),
     ("catia", "TOOLNO/1,20.0,3.0,,120.0", Read("comment TOOLNO 1,20.0,3.0,,120.0")),
     ("catia", "TOOLNO/1,TURN,1,0,3", Refused("turning")),
     ("catia", "TPRINT/T1 Drill D 10", Read("comment T1 Drill D 10")),
     ("iso", "LOADTL/4", Read("\ntool 4\n")),
     ("iso", "LOADTL/4,1,LENGTH,100", Warned("tool-arguments")),
+    ("iso", "^RAPID\nGOTO/0,0,90\nLOADTL/4", Warned("moves-before-tool")),
     ("iso", "LOADTL/4\nLOADTL/4", Warned("tool-repeated")),
     ("iso", "LOADTL/1.5", Refused("tool-number")),
     ("nx", "LOAD/TOOL,4", Read("\ntool 4\n")),
@@ -88,6 +90,7 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "FEDRAT/10,IPM\nGOTO/0,1,0", Read("feed 254 lines")),
     ("iso", "FEDRAT/0.01,IPR\nGOTO/0,1,0", Read("feed 127 lines")),
     ("iso", "FEDRAT/1,FPM\nGOTO/0,1,0", Read("feed 304.79999999999995 lines")),
+    ("iso", "FEDRAT/FPR,0.001\nGOTO/0,1,0", Read("feed 152.39999999999998 lines")),
     ("iso", "FEDRAT/INVERS,AUTO", Refused("feed-inverse")),
     ("iso", "FEDRAT/INVERS,OFF", Read("")),
     ("iso", "FEDRAT/0,MMPM", Refused("feed-range")),
@@ -95,11 +98,14 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "COOLNT/FLOOD,HIGH", Read("\ncoolant\n")),
     ("iso", "COOLNT/OFF", Read("\ncoolant stops\n")),
     ("iso", "COOLNT/MIST", Refused("coolant")),
-    ("iso", "COOLNT/THRU", Refused("coolant")),
+    ("iso", "COOLNT/TAP", Refused("coolant")),
+    ("iso", "COOLNT/THRU,HIGH", Refused("coolant")),
     ("iso", "DELAY/1.5", Read("\ndwell 1.5\n")),
     ("iso", "DELAY/2,REV", Refused("dwell-revolutions")),
     ("iso", "CUTCOM/OFF", Read("")),
     ("iso", "CUTCOM/LEFT,XYPLAN", Refused("cutter-compensation")),
+    ("nx", "CUTCOM/RIGHT,ZXPLAN", Refused("cutter-compensation")),
+    ("iso", "CUTCOM/LEFT,5", Refused("cutter-compensation")),
     ("iso", "CUTCOM/ON", Refused("cutter-compensation")),
     ("catia", "INTOL/0.025", Warned("word-left-out")),
     ("catia", "OUTTOL/0.025", Warned("word-left-out")),
@@ -134,6 +140,8 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "RAPID\nGOTO/5,0,10", Read("rapid X 5\n")),
     ("iso", "RAPID /\nGOTO/5,0,10\nGOTO/5,1,10", Read("rapid X 5\ncut as asked feed 100 lines")),
     ("iso", "FROM/1,2,3", Warned("from-late")),
+    ("iso", "^FROM/1,2,3,0,0,1", Read("\nrapid X 0 Y 0 Z 10\n")),
+    ("iso", "^FROM/1,2,80\nLOADTL/2\nGOHOME", Read("\nrapid X 1 Y 2 Z 80\n")),
     ("iso", "GOHOME/0,0,50", Read("rapid Z 50\n")),
     ("iso", "GOHOME", Refused("home-unknown")),
     ("iso", "GODLTA/1,2,-3", Read("    X 1.0 Y 2.0 Z 7.0\n")),
@@ -155,6 +163,17 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("nx", "CIRCLE/5,0,10,0,0,1,5,.06,.5,10,0\nGOTO/10,0,10", Read("arc Xy Clockwise")),
     ("fusion", "MOVARC/5,0,10,0,0,1,5,ANGLE,180\nGOTO/10,0,10", Read("arc Xy CounterClockwise")),
     ("catia", "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/5,0,10,5),ON,(LINE/5,0,10,9,0,10)", Read("arc Xy Clockwise")),
+    (
+        "catia",
+        "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/5,0,10,5),ON,2,INTOF,(LINE/5,0,10,0,0,10)",
+        Read("arc Xy Clockwise from X 0.0 Y 0.0 Z 10.0 to X 0.0 Y 0.0 Z 10.0"),
+    ),
+    (
+        "catia",
+        "INDIRV/0,1,0\nTLON,GOFWD/(CYLNDR/5,0,10,0,0,1,5),ON,(PLANE/PERPTO,(PLANE/(POINT/5,0,10),PERPTO,\
+         (VECTOR/0,0,1)),(POINT/5,0,10),(POINT/5,5,10))",
+        Read("arc Xy Clockwise from X 0.0 Y 0.0 Z 10.0 to X 5.0 Y 5.0 Z 10.0"),
+    ),
     ("catia", "TLON,GOFWD/(CIRCLE/5,0,10,5),ON,(LINE/5,0,10,9,0,10)", Refused("tangent-missing")),
     ("catia", "PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,0,1))", Warned("word-left-out")),
     // splines
@@ -185,6 +204,20 @@ const TABLE: &[(&str, &str, Becomes)] = &[
         "creo",
         "CYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,1\nGOTO/5,0,0\nCYCLE/OFF",
         Read("rapid X 5 Y 0 Z 10\nrapid Z 1\ncut as asked feed 50"),
+    ),
+    ("creo", "CYCLE/OFF", Read("")),
+    ("creo", "CYCLE/CLEAR", Read("")),
+    ("creo", "CYCLE/ON", Refused("cycle-unknown")),
+    ("iso", "CYCLE/INIT", Refused("cycle")),
+    (
+        "creo",
+        "CYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,1\nCYCLE/OFF\nCYCLE/ON\nGOTO/5,0,0\nCYCLE/OFF",
+        Read("rapid X 5 Y 0 Z 10\nrapid Z 1\ncut as asked feed 50"),
+    ),
+    (
+        "nx",
+        "CYCLE/DRILL,RAPTO,2,FEDTO,-7,RTRCTO,20,MMPM,50\nGOTO/5,0,0\nCYCLE/OFF",
+        Read("    X 5.0 Y 0.0 Z -7.0\nrapid Z 20\n"),
     ),
     ("creo", "CYCLE/BORE,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),
     ("creo", "CYCLE/TAP,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),

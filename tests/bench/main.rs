@@ -2,6 +2,8 @@
 //!
 //! The machine is shared and noisy: compare ratios.
 
+mod stages;
+
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
@@ -122,6 +124,9 @@ fn points_of_cl_data(c: &mut Criterion) {
     let size = sources.get(SourceId::INPUT).map_or(0, |source| source.text.len());
     group.throughput(Throughput::Bytes(size as u64));
     let Some(language) = front::find("apt") else { return };
+    for name in ["sinumerik", "heidenhain", "mazak"] {
+        stages::report(&sources, name);
+    }
     group.bench_function("parse", |b| b.iter(|| (language.parse)(black_box(&sources)).is_ok()));
     for name in ["sinumerik", "heidenhain", "mazak"] {
         let machine = Machine::built_in(name).unwrap_or_else(|| panic!("no machine {name}"));

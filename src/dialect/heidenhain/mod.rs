@@ -60,7 +60,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{Dialect, Form, Motion, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Motion, Parameter, Round};
 use crate::geom::arc::Plane;
 
 /// The dialect.
@@ -81,8 +81,11 @@ pub const DIALECT: Dialect = Dialect {
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
     inverse_time: false,
     round: Round::Step,
-    // C lies in the working plane; a helix is polar, with an angle that rounds.
-    takes_arc: |plane, helix| plane == Plane::Xy && !helix,
+    // C and CP lie in the working plane, square to the tool.
+    arc: |plane, helix| match plane {
+        Plane::Xy => Some(if helix { ArcWord::Turn } else { ArcWord::Center }),
+        Plane::Zx | Plane::Yz => None,
+    },
     direction: ["TX", "TY", "TZ"],
     second_curve: false,
     write: write::write,

@@ -70,8 +70,14 @@ struct Block {
     /// TX TY TZ.
     direction: [Option<Decimal>; 3],
     spline: bool,
-    /// DR of C.
+    /// DR of C and CP.
     rotation: Option<Sense>,
+    /// Whether it is CP.
+    polar: bool,
+    /// IPA of CP, degrees.
+    turn: Option<Decimal>,
+    /// IZ of CP, in units of the last decimal.
+    rise: Option<i64>,
 }
 
 impl Block {
@@ -87,6 +93,9 @@ impl Block {
             direction: [None; 3],
             spline,
             rotation: None,
+            polar: false,
+            turn: None,
+            rise: None,
         }
     }
 
@@ -112,6 +121,8 @@ struct Reader<'t, 'm> {
     unmarked: Option<Span>,
     /// The centre that CC stated, in X and Y.
     center: Option<[i64; 2]>,
+    /// Whether X and Y stand where a CP left them, which is no place in decimals.
+    loose: [bool; 2],
 }
 
 /// Reads a program.
@@ -126,6 +137,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         gap: None,
         unmarked: None,
         center: None,
+        loose: [false; 2],
     };
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
@@ -161,7 +173,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             continue;
         }
         match keyword {
-            "L" | "LN" | "SPL" | "CC" | "C" => reader.block(keyword, body, start, &line, span),
+            "L" | "LN" | "SPL" | "CC" | "C" | "CP" => reader.block(keyword, body, start, &line, span),
             _ => match body.strip_prefix(';').or_else(|| body.strip_prefix('*')) {
                 Some(comment) => reader.assembler.step(Step::Comment(comment.trim().to_owned()), span),
                 None => reader.unknown(body, start),
@@ -192,9 +204,10 @@ impl<'t> Reader<'t, '_> {
     ///
     /// `block = "L", [ blank, words ], { "~", end_of_line, words }
     ///     | "SPL", [ blank, words ], { "~", end_of_line, words | end_of_line, { blank }, coefficient, words }
-    ///     | ( "LN" | "CC" | "C" ), [ blank, words ], { "~", end_of_line, words }`
+    ///     | ( "LN" | "CC" | "C" | "CP" ), [ blank, words ], { "~", end_of_line, words }`
     fn block(&mut self, keyword: &str, body: &'t str, start: usize, first: &Line<'t>, mut span: Span) {
         let mut block = Block::new(keyword == "SPL");
+        block.polar = keyword == "CP";
         let known = self.assembler.diagnostics.0.len();
         let head = start..start + body.trim_end_matches(['~', ' ']).len();
         let mut text = &body[keyword.len()..];
@@ -222,6 +235,8 @@ impl<'t> Reader<'t, '_> {
         if known == self.assembler.diagnostics.0.len() {
             match keyword {
                 "CC" => self.center(&block, head),
+                "CP" => self.helix(&block, first.number, head, span),
+                _ if !self.is_exact(&block, keyword == "C", head.clone()) => {}
                 "C" => self.arc(&block, first.number, head, span),
                 "LN" => {
                     if let Some(named) = self.assembler.direction(block.direction, head.clone()) {
@@ -277,16 +292,11 @@ impl<'t> Reader<'t, '_> {
                     return self.axis_unknown(letter, range);
                 };
                 if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                    if block.named().iter().any(|(other, _)| *other == axis) {
-                        let message = format!("{} stands twice in this block", char::from(letter));
-                        return self.assembler.error("axis-twice", message, range);
-                    }
-                    block.named[block.count] = (axis, units);
-                    block.places[block.count] = (range.start, range.end);
-                    block.count += 1;
+                    self.name_axis(block, (axis, letter), units, range);
                 }
             }
             Word::Step(letter, value) => self.step(letter, value, range, block),
+            Word::Turn(value) => self.turn(value, range, block),
             Word::FeedParameter(_) if block.feed.is_some() || block.rapid => {
                 self.assembler.error("feed-twice", "a block has one feed", range);
             }
@@ -319,26 +329,9 @@ impl<'t> Reader<'t, '_> {
         }
     }
 
-    /// A step of an axis that goes round past 360 degrees.
-    fn step(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
-        let Some(axis) = self.assembler.letter(letter) else { return self.axis_unknown(letter, range) };
-        let text = format!("I{}{}", char::from(letter), signed(value));
-        if !self.assembler.wraps(axis) {
-            return self.other(&text, range);
-        }
-        if block.spline {
-            let message = format!("SPL says where it ends, not by how much it goes on, as in `{text}`");
-            return self.assembler.error("spline-step", message, range);
-        }
-        let value = self.assembler.coefficient(axis, value);
-        let to = value
-            .units(self.assembler.digits[axis])
-            .and_then(|step| self.assembler.position[axis]?.checked_add(step));
-        let Some(units) = to else {
-            let message =
-                format!("`{text}` goes on from a place that the text does not say, or has too many decimals");
-            return self.assembler.error("step-unknown", message, range);
-        };
+    /// A block names where an axis goes, once.
+    #[inline]
+    fn name_axis(&mut self, block: &mut Block, (axis, letter): (usize, u8), units: i64, range: Range<usize>) {
         if block.named().iter().any(|(other, _)| *other == axis) {
             let message = format!("{} stands twice in this block", char::from(letter));
             return self.assembler.error("axis-twice", message, range);
@@ -436,7 +429,7 @@ impl<'t> Reader<'t, '_> {
         self.assembler.diagnostics.push(
             Diagnostic::error("block-unknown", message)
                 .at(span, "")
-                .hint("L, LN, C, CC, SPL, comments and the lines of the machine file are read"),
+                .hint("L, LN, C, CC, CP, SPL, comments and the lines of the machine file are read"),
         );
         let mut goes_on = body.ends_with('~');
         while goes_on && let Some(next) = self.lines.next() {
@@ -453,7 +446,7 @@ impl<'t> Reader<'t, '_> {
             self.assembler.feed = block.feed;
         }
         if block.rotation.is_some() {
-            return self.assembler.error("rotation", "DR belongs to C", head);
+            return self.assembler.error("rotation", "DR belongs to C and CP", head);
         }
         match (block.spline, block.rapid) {
             (true, _) => self.spline(block, line, head, span),

@@ -21,6 +21,8 @@ pub(super) enum Word<'t> {
     Coordinate(u8, Decimal),
     /// `IA+12`
     Step(u8, Decimal),
+    /// `IPA+360`
+    Turn(Decimal),
     /// `FQ1`
     FeedParameter(u32),
     /// `K3X-4.688E-002`: which K, its axis, and its value where it can be held
@@ -39,7 +41,7 @@ pub(super) enum Word<'t> {
     Other(&'t str),
 }
 
-/// `word = coordinate | coefficient | direction | feed | feed_parameter | rapid | step | compensation | rotation`, or [`other`]
+/// `word = coordinate | coefficient | direction | feed | feed_parameter | rapid | step | turn | compensation | rotation`, or [`other`]
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
     alt((
@@ -50,6 +52,7 @@ pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
         feed_parameter,
         rapid,
         step,
+        turn,
         compensation,
         rotation,
         other,
@@ -69,7 +72,12 @@ fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
     preceded(tag("FQ"), map_res(digit1, str::parse)).map(Word::FeedParameter).parse(input)
 }
 
-/// `step = "I", wrapping_axis, number`, or another axis
+/// `turn = "IPA", number`
+fn turn(input: &str) -> IResult<&str, Word<'_>> {
+    preceded(tag("IPA"), number).map(Word::Turn).parse(input)
+}
+
+/// `step = "I", ( wrapping_axis | "Z" ), number`, or another axis
 fn step(input: &str) -> IResult<&str, Word<'_>> {
     preceded(char('I'), (axis, number)).map(|(letter, value)| Word::Step(letter, value)).parse(input)
 }

@@ -1,13 +1,15 @@
 //! Spells a legal program in Klartext. Every block has a number, comments too; a block that goes on in the next line
 //! ends with `~`, and the lines that continue it have none.
 
-use crate::decimal::{Decimal, Spelling};
+use crate::decimal::{Decimal, Spelling, write_units};
 use crate::dialect::arc::counted_sense;
 use crate::dialect::block::expected_size;
 use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
 use crate::geom::arc::Sense;
-use crate::ir::{Decimals, PolynomialBlock, Units, Written, WrittenArc, WrittenPoints, WrittenPolynomial};
+use crate::ir::{
+    ArcBy, Decimals, PolynomialBlock, Units, Written, WrittenArc, WrittenPoints, WrittenPolynomial,
+};
 use crate::machine::Machine;
 use crate::pass::check::{Legal, closing_coefficients};
 
@@ -112,26 +114,50 @@ impl Writer<'_> {
         self.modal.lines_end();
     }
 
-    /// The centre, then the end. `check` lets arcs in X Y pass only.
+    /// The centre, then the end, or for a helix the angle and the height. `check` lets arcs in X Y pass only.
     fn arc(&mut self, arc: &WrittenArc, feed: Option<Decimal>) {
-        let [u, v, _] = arc.plane.axes();
+        let [u, v, w] = arc.plane.axes();
+        let (center, turn) = match arc.by {
+            ArcBy::Center(center) => (center, None),
+            ArcBy::Turn(center, degrees) => (center, Some(degrees)),
+            // The dialect does not ask for it, so that `quantise` makes none.
+            ArcBy::Way(_) => return,
+        };
         self.modal.begin("");
         self.modal.text("CC ");
-        self.modal.axis(u, arc.center[0]);
-        self.modal.axis(v, arc.center[1]);
+        self.modal.axis(u, center[0]);
+        self.modal.axis(v, center[1]);
         self.modal.end();
         self.modal.begin("");
-        self.modal.text("C ");
-        self.modal.axis(u, arc.end[u]);
-        self.modal.axis(v, arc.end[v]);
-        self.modal.text(match counted_sense(self.modal.machine, arc.plane, arc.sense) {
+        let sense = counted_sense(self.modal.machine, arc.plane, arc.sense);
+        // The other axes rest; where they are is said by the next move that is straight.
+        if let Some(degrees) = turn {
+            self.modal.text("CP IPA");
+            let signed = if sense == Sense::Clockwise { degrees.times(-1) } else { Some(degrees) };
+            signed.unwrap_or(degrees).write(&mut self.modal.out, self.modal.spelling);
+            self.modal.gap();
+            let rise = self.modal.counted(w, arc.end[w]) - self.modal.counted(w, arc.start[w]);
+            if rise != 0 {
+                self.modal.text("I");
+                self.modal.axis_name(w);
+                write_units(&mut self.modal.out, rise, self.decimals.digits[w], self.modal.spelling);
+                self.modal.gap();
+                self.modal.position[w] = Some(arc.end[w]);
+            }
+            // An angle leads to no place in decimals, so that the next move names one.
+            (self.modal.position[u], self.modal.position[v]) = (None, None);
+        } else {
+            self.modal.text("C ");
+            self.modal.axis(u, arc.end[u]);
+            self.modal.axis(v, arc.end[v]);
+            self.modal.position[u] = Some(arc.end[u]);
+            self.modal.position[v] = Some(arc.end[v]);
+        }
+        self.modal.text(match sense {
             Sense::Clockwise => "DR- ",
             Sense::CounterClockwise => "DR+ ",
         });
         self.modal.feed(feed);
-        // The other axes rest; where they are is said by the next move that is straight.
-        self.modal.position[u] = Some(arc.end[u]);
-        self.modal.position[v] = Some(arc.end[v]);
         self.modal.end();
     }
 

@@ -57,7 +57,7 @@
 mod read;
 mod write;
 
-use super::{Dialect, Form, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Motion, NurbsRules, Parameter, Round};
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -88,7 +88,7 @@ pub const MAZAK: Dialect = Dialect {
     inverse_time: true,
     round: Round::Place,
     // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
-    takes_arc: |_, _| true,
+    arc: |_, _| Some(ArcWord::Center),
     direction: ["I", "J", "K"],
     second_curve: false,
     write: write::write,

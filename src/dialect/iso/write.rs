@@ -50,8 +50,13 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A line of fixed words.
+    /// A line of fixed words. It stands in X Y, so that a length of a tool that it calls counts along Z.
     fn line(&mut self, text: &str) {
+        if self.plane.take_if(|plane| *plane != Plane::Xy).is_some() {
+            self.modal.begin("N");
+            self.modal.text(arc::plane_word(Plane::Xy));
+            self.modal.end();
+        }
         if is_block(text) || (text.starts_with('(') && self.modal.machine.text.number_comments) {
             self.modal.begin("N");
         }
@@ -107,7 +112,13 @@ impl Writer<'_> {
                     }
                     match &cut.curve {
                         Written::Lines(points) => self.lines(points, cut.feed),
-                        Written::Arc(arc) => arc::write(&mut self.modal, arc, cut.feed, &mut self.plane),
+                        // The dialect asks for nothing but centres.
+                        Written::Arc(arc) => {
+                            if let Some(center) = arc::stated_center(arc) {
+                                let arc = (arc, center);
+                                arc::write(&mut self.modal, arc, cut.feed, &mut self.plane);
+                            }
+                        }
                         Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),
                         Written::Through(_, points) => self.through(points, &cut.curve, cut.feed),
                         // No motion of these dialects has this form, so `convert` leaves none.

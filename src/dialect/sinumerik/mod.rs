@@ -61,7 +61,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{Dialect, Form, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 
@@ -105,8 +105,12 @@ pub const DIALECT: Dialect = Dialect {
     parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
     inverse_time: false,
     round: Round::Shortest,
-    // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise.
-    takes_arc: |plane, _| plane == Plane::Xy,
+    // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
+    // no plane; it has no helices.
+    arc: |plane, helix| match plane {
+        Plane::Xy => Some(ArcWord::Center),
+        Plane::Zx | Plane::Yz => (!helix).then_some(ArcWord::Way),
+    },
     direction: ["A3=", "B3=", "C3="],
     second_curve: true,
     write: write::write,

@@ -2,6 +2,7 @@
 //!
 //! A word that is not understood is an error at its place.
 
+mod arcs;
 mod orientation;
 mod path;
 mod spline;
@@ -35,6 +36,7 @@ enum Motion {
     Rapid,
     Line,
     Arc(Sense),
+    ArcBy,
     Poly,
     Bspline,
     Through(ThroughKind),
@@ -62,6 +64,8 @@ struct Block {
     direction: [Option<Decimal>; 3],
     /// XH YH ZH, and the coefficients of PO[XH] and so on.
     second: [Option<(Decimal, [Decimal; COEFFICIENTS])>; 3],
+    /// I1 J1 K1, as places.
+    way: [Option<i64>; 3],
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -154,7 +158,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
-        let code = body.split(';').next().unwrap_or_default();
+        let code = &body[..memchr::memchr(b';', body.as_bytes()).unwrap_or(body.len())];
         reader.block(code, start, line.number, span);
         if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
@@ -193,6 +197,7 @@ impl Reader<'_> {
             center: [None; 3],
             direction: [None; 3],
             second: [None; 3],
+            way: [None; 3],
             feed: None,
             starts_spline: false,
         };
@@ -245,6 +250,7 @@ impl Reader<'_> {
                 }
             }
             Word::Shortest(name, value) => self.shortest(name, value, range, block),
+            Word::Way(name, value) => self.way(name, value, range, block),
             Word::Polynomial(name, values) => {
                 if COEFFICIENTS + 1 < values.len() {
                     return self.assembler.error(
@@ -357,24 +363,6 @@ impl Reader<'_> {
         }
     }
 
-    /// The feed of a block holds from its own move on. A new one starts a new run of polynomial blocks; a spline is one
-    /// curve with one feed.
-    fn set_feed(&mut self, feed: Decimal, span: Span) {
-        if self.assembler.feed == Some(feed) {
-            return;
-        }
-        match self.run.as_ref().map(|run| run.motion) {
-            Some(Motion::Bspline | Motion::Through(_)) => {
-                let whole = span.start as usize..span.end as usize;
-                self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
-            }
-            Some(Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_)) | None => {
-                self.flush();
-            }
-        }
-        self.assembler.feed = Some(feed);
-    }
-
     /// The move that a block makes.
     fn moved(&mut self, block: &Block, line: u32, span: Span) {
         let whole = || span.start as usize..span.end as usize;
@@ -393,7 +381,12 @@ impl Reader<'_> {
         if !arc && block.center.iter().any(Option::is_some) {
             return self.assembler.error("arc-word", "I J K belong to G2 and G3", whole());
         }
-        if block.count == 0 && !block.has_polynomial && !block.center.iter().any(Option::is_some) {
+        let by = self.motion == Motion::ArcBy;
+        if !by && block.way.iter().any(Option::is_some) {
+            return self.assembler.error("arc-word", "I1 J1 K1 belong to CIP", whole());
+        }
+        let bare = block.center.iter().all(Option::is_none) && block.way.iter().all(Option::is_none);
+        if block.count == 0 && !block.has_polynomial && bare {
             if block.pl.is_some() || block.pw.is_some() {
                 self.assembler.error("spline-word", "a spline block without an axis", whole());
             }
@@ -411,6 +404,7 @@ impl Reader<'_> {
                     arc::Said { plane, sense, named: block.named(), offsets: block.center, line, span };
                 arc::read(&mut self.assembler, &said);
             }
+            Motion::ArcBy => self.arc_by(block, line, span),
             Motion::Poly | Motion::Bspline | Motion::Through(_) => self.spline_block(block, line, span),
         }
     }
@@ -486,7 +480,7 @@ impl Reader<'_> {
                     WrittenPoints { start: run.start, stride, units, lines: run.lines, rates: Vec::new() },
                 ))
             }
-            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) => None,
+            Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy => None,
         };
         let Some(curve) = curve else { return };
         self.path_reference(&curve, span);

@@ -20,6 +20,8 @@ pub(super) enum Word<'t> {
     FeedParameter(u32),
     /// `A=DC(5)`
     Shortest(&'t str, Decimal),
+    /// `I1=AC(5)`
+    Way(&'t str, Decimal),
     /// `PO[X]=(30,0.36,-0.022)`, `X=PO(30,0.36)`; the denominator `PO[]=(2,1)` has no name
     Polynomial(&'t str, Vec<Decimal>),
     /// `SPLINEPATH(1,X,Y)`
@@ -28,9 +30,10 @@ pub(super) enum Word<'t> {
     Keyword(&'t str),
 }
 
-/// `word = address | polynomial | feed_parameter | shortest | assignment | call | keyword`
+/// `word = address | polynomial | feed_parameter | shortest | way | assignment | call | keyword`
+#[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
-    alt((address, polynomial, feed_parameter, shortest, assignment, call, keyword)).parse(input)
+    alt((address, polynomial, feed_parameter, shortest, way, assignment, call, keyword)).parse(input)
 }
 
 /// `feed_parameter = "F", equals, "R", digits`
@@ -45,6 +48,14 @@ fn shortest(input: &str) -> IResult<&str, Word<'_>> {
     let value = delimited((tag("DC("), space0), number, (space0, char(')')));
     (terminated(name, (space0, char('='), space0)), value)
         .map(|(axis, value)| Word::Shortest(axis, value))
+        .parse(input)
+}
+
+/// `way = ( "I1" | "J1" | "K1" ), equals, "AC(", item, ")"`, or another name
+fn way(input: &str) -> IResult<&str, Word<'_>> {
+    let value = delimited((tag("AC("), space0), number, (space0, char(')')));
+    (terminated(name, (space0, char('='), space0)), value)
+        .map(|(name, value)| Word::Way(name, value))
         .parse(input)
 }
 

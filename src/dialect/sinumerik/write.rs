@@ -6,10 +6,10 @@ use crate::dialect::modal::Modal;
 use crate::dialect::parts::{Part, parts};
 use crate::geom::arc::Plane;
 use crate::ir::{
-    COEFFICIENTS, Decimals, PolynomialBlock, ThroughKind, Units, Written, WrittenNurbs, WrittenPoints,
-    WrittenPolynomial,
+    ArcBy, COEFFICIENTS, Decimals, PolynomialBlock, ThroughKind, Units, Written, WrittenArc, WrittenNurbs,
+    WrittenPoints, WrittenPolynomial,
 };
-use crate::machine::{Machine, Turn};
+use crate::machine::{FirstPoint, Machine, Turn};
 use crate::pass::check::{Legal, moving};
 use crate::units::Kind;
 
@@ -99,7 +99,7 @@ impl Writer<'_> {
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => match &cut.curve {
                     Written::Lines(points) => self.lines(points, cut.feed),
-                    Written::Arc(arc) => arc::write(&mut self.modal, arc, cut.feed, &mut self.plane),
+                    Written::Arc(arc) => self.arc(arc, cut.feed),
                     Written::Polynomial(polynomial) => self.polynomial(polynomial, &cut.curve, cut.feed),
                     Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),
                     Written::Through(kind, points) => self.through(*kind, points, &cut.curve, cut.feed),
@@ -176,6 +176,38 @@ impl Writer<'_> {
             self.modal.end();
         }
         self.modal.lines_end();
+    }
+
+    fn arc(&mut self, arc: &WrittenArc, feed: Option<Decimal>) {
+        match arc.by {
+            ArcBy::Center(center) => arc::write(&mut self.modal, (arc, center), feed, &mut self.plane),
+            ArcBy::Way(way) => self.arc_by(arc, &way, feed),
+            // The dialect does not ask for it, so that `quantise` makes none.
+            ArcBy::Turn(..) => {}
+        }
+    }
+
+    /// CIP: the end, and a place on the way. AC states it from zero, whatever G90 and G91 do to it.
+    fn arc_by(&mut self, arc: &WrittenArc, way: &Units, feed: Option<Decimal>) {
+        let [u, v, _] = arc.plane.axes();
+        self.modal.begin("N");
+        self.modal.motion("CIP");
+        for i in 0..self.modal.machine.axes.count() {
+            if i == u || i == v || self.modal.position[i] != Some(arc.end[i]) {
+                self.modal.axis(i, arc.end[i]);
+            }
+        }
+        let spelling = self.modal.spelling;
+        for (i, name) in ["I1", "J1", "K1"].into_iter().enumerate() {
+            self.modal.text(name);
+            self.modal.text("=AC(");
+            let place = self.modal.counted(i, way[i]);
+            write_units(&mut self.modal.out, place, self.decimals.digits[i], spelling);
+            self.modal.text(") ");
+        }
+        self.modal.feed(feed);
+        self.modal.reached(&arc.end);
+        self.modal.end();
     }
 
     /// UPATH, where a rotary axis moves; SPLINEPATH, where a spline group is to have it.
@@ -274,20 +306,24 @@ impl Writer<'_> {
         self.path_reference(curve, true);
         let mut moved = moving(curve);
         let second = self.second_curve(&moved, &nurbs.points[0], feed);
-        let first = self.modal.direction.filter(|_| second);
+        let turned = self.modal.direction.filter(|_| second);
         moved.retain(|i| self.modal.direction.is_none_or(|first| *i < first));
         // A spline starts anew: two in a row would else be one.
         self.modal.motion = None;
-        for (j, point) in nurbs.points.iter().enumerate().skip(1) {
+        let first = match self.modal.machine.spline.first_point {
+            FirstPoint::Before => 1,
+            FirstPoint::Repeated => 0,
+        };
+        for (j, point) in nurbs.points.iter().enumerate().skip(first) {
             self.modal.begin("N");
-            if j == 1 {
+            if j == first {
                 self.modal.motion("BSPLINE");
                 self.modal.text("SD=");
                 self.modal.text(itoa::Buffer::new().format(nurbs.degree));
                 self.modal.gap();
             }
             self.modal.axes(&moved, point);
-            if let Some(first) = first {
+            if let Some(first) = turned {
                 self.second_point(first, point);
             }
             self.modal.text("PL=");

@@ -162,6 +162,14 @@ impl Reader<'_> {
             self.push(Diagnostic::warning("tool-repeated", message).at(said.span, ""));
             return;
         }
+        if self.tool.is_none() && self.program.has_moved() {
+            let message = "the file moves before it calls its first tool: no length of that tool holds there";
+            self.push(
+                Diagnostic::warning("moves-before-tool", message)
+                    .at(said.span, "first called here")
+                    .hint("see that those moves are clear for whatever tool the spindle holds"),
+            );
+        }
         self.tool = Some(number);
         self.program.tool(number, said.span);
     }

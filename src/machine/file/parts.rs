@@ -8,7 +8,8 @@ use crate::machine::keys::{
 };
 use crate::machine::template::Template;
 use crate::machine::{
-    AxisLimits, Digits, Frame, LineEnd, Machine, Moves, Orientation, Parameters, Spline, Text, Turn,
+    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, Spline, Text,
+    Turn,
 };
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
@@ -125,6 +126,14 @@ impl Reader {
         {
             self.error("blocks-range", "bspline_min_blocks is at most 1000", blocks.span());
         }
+        let first_point = file.first_point.and_then(|word| match word.get_ref().as_str() {
+            "g1" => Some(FirstPoint::Before),
+            "repeat" => Some(FirstPoint::Repeated),
+            _ => {
+                self.error("first-point", "first_point is \"g1\" or \"repeat\"", word.span());
+                None
+            }
+        });
         // Empty where a control has none.
         for (word, known) in
             [(&file.begin, ["", "BAUTO", "BNAT", "BTAN"]), (&file.end, ["", "EAUTO", "ENAT", "ETAN"])]
@@ -153,6 +162,7 @@ impl Reader {
                 base.map(|b| b.bspline_min_blocks),
                 "spline.bspline_min_blocks",
             )?,
+            first_point: self.or(first_point, base.map(|b| b.first_point), "spline.first_point")?,
             begin: self.or(
                 file.begin.map(Spanned::into_inner),
                 base.map(|b| b.begin.clone()),

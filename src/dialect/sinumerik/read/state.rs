@@ -1,9 +1,10 @@
-//! Words that change what holds, and axes that go the short way.
+//! Words that change what holds, the feed, and axes that go the short way.
 
 use super::{Block, Motion, Reader, STATE_CODES};
 use crate::decimal::Decimal;
 use crate::dialect::sinumerik::write::turn_word;
 use crate::ir::ThroughKind;
+use crate::source::Span;
 use std::ops::Range;
 
 impl Reader<'_> {
@@ -24,8 +25,30 @@ impl Reader<'_> {
         }
     }
 
+    /// The feed of a block holds from its own move on. A new one starts a new run of polynomial blocks; a spline is one
+    /// curve with one feed.
+    pub(super) fn set_feed(&mut self, feed: Decimal, span: Span) {
+        if self.assembler.feed == Some(feed) {
+            return;
+        }
+        match self.run.as_ref().map(|run| run.motion) {
+            Some(Motion::Bspline | Motion::Through(_)) => {
+                let whole = span.start as usize..span.end as usize;
+                self.assembler.error("feed-in-spline", "the feed changes inside a spline", whole);
+            }
+            Some(
+                Motion::Poly | Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy,
+            )
+            | None => {
+                self.flush();
+            }
+        }
+        self.assembler.feed = Some(feed);
+    }
+
     pub(super) fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
         match keyword {
+            "CIP" => self.set_motion(Motion::ArcBy),
             "POLY" => self.set_motion(Motion::Poly),
             "BSPLINE" => {
                 block.starts_spline = true;
