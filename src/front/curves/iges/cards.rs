@@ -167,7 +167,8 @@ impl Cards {
         let first = bytes.strip_prefix(b"1H").and_then(|rest| rest.first().copied());
         self.delimiters.0 = first.unwrap_or(b',');
         let rest = if first.is_some() { 4 } else { 1 };
-        let second = bytes.get(rest..).and_then(|rest| rest.strip_prefix(b"1H")).and_then(|rest| rest.first());
+        let second =
+            bytes.get(rest..).and_then(|rest| rest.strip_prefix(b"1H")).and_then(|rest| rest.first());
         self.delimiters.1 = second.copied().unwrap_or(b';');
         let all = self.split(joined)?;
         let field = |i: usize| all.get(i - 1).filter(|parameter| !parameter.text.is_empty());
@@ -274,7 +275,8 @@ impl Cards {
                 // A text may hold delimiters; its length says where it ends.
                 let length: usize = joined.text[from..from + digits].parse().unwrap_or(usize::MAX);
                 let start = from + digits + 1;
-                let Some(held) = start.checked_add(length).and_then(|stop| joined.text.get(start..stop)) else {
+                let Some(held) = start.checked_add(length).and_then(|stop| joined.text.get(start..stop))
+                else {
                     let span = Span::new(self.id, joined.place(from..start));
                     return Err(fail("file-truncated", "a text is longer than its record", span));
                 };

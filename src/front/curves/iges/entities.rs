@@ -75,7 +75,8 @@ pub(super) fn read(cards: &Cards) -> Result<Read, Diagnostics> {
         if entry.blanked {
             left_out.add(&format!("{name} that is blanked"), entry.span);
         } else if let Some((kind, name)) = UNREAD.iter().find(|(kind, _)| *kind == entry.kind) {
-            let error = Diagnostic::error("curve-unread", format!("{kind}, a {name}, is a curve that is not read"));
+            let error =
+                Diagnostic::error("curve-unread", format!("{kind}, a {name}, is a curve that is not read"));
             errors.push(error.at(entry.span, "").hint("export curves as B-splines (126)"));
         } else if !matches!(entry.kind, 100 | 102 | 106 | 110 | 112 | 126) || open_line || points {
             left_out.add(&name, entry.span);
