@@ -64,7 +64,7 @@ pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
             warnings: Diagnostics::new(),
         },
         errors: Diagnostics::new(),
-        section: String::new(),
+        section: "",
         entities: false,
         open: None,
         layers: BTreeMap::new(),
@@ -76,6 +76,10 @@ pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
             ended = true;
             break;
         }
+        // What the last entity lacks is not its own fault then.
+        if groups.is_over() {
+            break;
+        }
         if let Err(error) = reader.group(&group) {
             reader.errors.push(error);
             if MOST_ERRORS <= reader.errors.0.len() {
@@ -83,7 +87,7 @@ pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
             }
         }
     }
-    if !ended && reader.errors.0.is_empty() {
+    if !ended && reader.errors.0.len() < MOST_ERRORS {
         let end = Span::new(id, text.trim_end().len()..text.trim_end().len());
         let message = "the file ends before its EOF: a part of it is missing";
         reader.errors.push(Diagnostic::error("file-truncated", message).at(end, ""));
@@ -111,7 +115,7 @@ pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
 struct Reader<'t> {
     read: Read,
     errors: Diagnostics,
-    section: String,
+    section: &'t str,
     /// Whether there was a section ENTITIES.
     entities: bool,
     /// A POLYLINE whose vertices follow.
@@ -124,14 +128,14 @@ impl<'t> Reader<'t> {
     fn group(&mut self, group: &Group<'t>) -> Result<(), Diagnostic> {
         match group.name {
             "SECTION" => {
-                self.section = group.text(2).unwrap_or_default().to_owned();
+                self.section = group.text(2).unwrap_or_default();
                 self.entities |= self.section == "ENTITIES";
                 if self.section == "HEADER" {
                     self.header(group);
                 }
             }
             "ENDSEC" => {
-                self.section.clear();
+                self.section = "";
                 return self.polyline_ended();
             }
             _ if self.section == "ENTITIES" => return self.entity(group),
@@ -176,7 +180,7 @@ impl<'t> Reader<'t> {
         if group.name == "SEQEND" {
             // Attributes of an INSERT end like this too.
             if let Some(polyline) = self.open.take() {
-                self.read.curves.extend(polyline.curves()?);
+                self.read.curves.extend(polyline.curves());
             }
             return Ok(());
         }

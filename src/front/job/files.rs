@@ -38,7 +38,7 @@ pub fn named(source: &Source) -> Vec<String> {
     let Some(DeValue::Array(tables)) = table.get_ref().get("curve").map(Spanned::get_ref) else {
         return names;
     };
-    for one in tables.iter() {
+    for one in tables {
         if let DeValue::Table(table) = one.get_ref()
             && let Some(DeValue::String(name)) = table.get("file").map(Spanned::get_ref)
             && !names.iter().any(|known| known == name.as_ref())

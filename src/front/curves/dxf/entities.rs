@@ -59,14 +59,13 @@ pub(super) fn circle(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
     let arc = group.name == "ARC";
     let kind = if arc { "ARC" } else { "CIRCLE" };
     let degrees = |x: f64| x * (TURN / 360.0);
-    let (from, to) = match arc {
-        false => (0.0, TURN),
-        true => {
-            let from = group.needed(50, "start angle")?;
-            let turned = (group.needed(51, "end angle")? - from).rem_euclid(360.0);
-            let from = from.rem_euclid(360.0);
-            (degrees(from), degrees(from + if turned == 0.0 { 360.0 } else { turned }))
-        }
+    let (from, to) = if arc {
+        let from = group.needed(50, "start angle")?;
+        let turned = (group.needed(51, "end angle")? - from).rem_euclid(360.0);
+        let from = from.rem_euclid(360.0);
+        (degrees(from), degrees(from + if turned == 0.0 { 360.0 } else { turned }))
+    } else {
+        (0.0, TURN)
     };
     let (u, v) = (own.vector([radius, 0.0, 0.0]), own.vector([0.0, radius, 0.0]));
     Ok(curve(group, kind, Path::Conic(Conic::new(center, u, v, from, to))))
@@ -208,22 +207,24 @@ impl Polyline {
     }
 
     /// Its lines and arcs.
-    pub(super) fn curves(self) -> Result<Vec<FileCurve>, Diagnostic> {
-        let Some(mut own) = self.own else { return Ok(Vec::new()) };
+    pub(super) fn curves(self) -> Vec<FileCurve> {
+        let Some(mut own) = self.own else { return Vec::new() };
         let spatial = self.flags & 8 != 0;
         if spatial {
             own = Own { x: [1.0, 0.0, 0.0], y: [0.0, 1.0, 0.0], z: [0.0, 0.0, 1.0] };
         }
         let mut corners = self.corners;
         if spatial {
-            corners.iter_mut().for_each(|corner| corner.bulge = 0.0);
+            for corner in &mut corners {
+                corner.bulge = 0.0;
+            }
         }
-        Ok(polyline("POLYLINE", self.head, &corners, self.flags & 1 == 1, &own))
+        polyline("POLYLINE", self.head, &corners, self.flags & 1 == 1, &own)
     }
 
     /// What is wrong where its vertices are not ended.
     pub(super) fn unfinished(&self) -> Diagnostic {
-        let message = "POLYLINE has no SEQEND behind its vertices: a part of the file is missing";
-        Diagnostic::error("file-truncated", message).at(self.head, "")
+        let message = "POLYLINE has no SEQEND behind its vertices";
+        Diagnostic::error("seqend-missing", message).at(self.head, "")
     }
 }

@@ -41,6 +41,11 @@ impl<'t> Groups<'t> {
         Groups { text, id, at, line: 1, next: None }
     }
 
+    /// Whether no group is left behind the last one.
+    pub(super) fn is_over(&self) -> bool {
+        self.next.is_none()
+    }
+
     /// The next line without its end and the blanks round it, and where it stands.
     fn line(&mut self) -> Option<(&'t str, Span)> {
         let rest = self.text.get(self.at..).filter(|rest| !rest.is_empty())?;
@@ -52,7 +57,7 @@ impl<'t> Groups<'t> {
         Some((line, Span::new(self.id, from..from + line.len())))
     }
 
-    /// `pair = { blank }, code, end_of_line, value, end_of_line`, of which none is left.
+    /// A pair; none where nothing is left.
     fn pair(&mut self) -> Result<Option<Tag<'t>>, Diagnostics> {
         let Some((code, code_span)) = self.line() else { return Ok(None) };
         if code.is_empty() && self.text[self.at.min(self.text.len())..].trim().is_empty() {

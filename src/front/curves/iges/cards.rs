@@ -245,7 +245,7 @@ impl Cards {
         }
         if joined.starts.len() < count.max(1) {
             let message = format!("{} has parameters in {count} lines; some of them are missing", entry.kind);
-            return Err(fail("file-truncated", message, entry.span));
+            return Err(fail("record-truncated", message, entry.span));
         }
         let mut all = self.split(&joined)?;
         let kind = if all.is_empty() { None } else { Some(all.remove(0)) };
@@ -278,7 +278,7 @@ impl Cards {
                 let Some(held) = start.checked_add(length).and_then(|stop| joined.text.get(start..stop))
                 else {
                     let span = Span::new(self.id, joined.place(from..start));
-                    return Err(fail("file-truncated", "a text is longer than its record", span));
+                    return Err(fail("record-truncated", "a text is longer than its record", span));
                 };
                 text = Some(held.to_owned());
                 at = start + length;
@@ -287,7 +287,7 @@ impl Cards {
             let Some(stop) = stop else {
                 let span = Span::new(self.id, joined.place(from..joined.text.len().max(from)));
                 let message = "a record has no end: a part of the file is missing";
-                return Err(fail("file-truncated", message, span));
+                return Err(fail("record-truncated", message, span));
             };
             let raw = joined.text[from..stop].trim_end();
             let span = Span::new(self.id, joined.place(from..from + raw.len()));

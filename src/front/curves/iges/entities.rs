@@ -2,7 +2,7 @@
 
 use super::super::conic::{Conic, TURN, sweep};
 use super::super::spline::{Number, Stated};
-use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, order};
+use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, order, point};
 use super::cards::{Cards, Entry, Parameter, number};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
@@ -13,8 +13,8 @@ use std::collections::BTreeSet;
 /// How deep composite curves and transformations may stand in each other.
 const DEEPEST: usize = 16;
 
-/// Pieces and ends that are no farther apart than this are one place, in units of the file.
-const SAME: f64 = 1.0e-6;
+/// Pieces and ends that are no farther apart than this are one place, mm: what six printed decimals may lose.
+const SAME: f64 = 2.0e-6;
 
 /// Kinds that shape nothing: colours, properties, groups, views, definitions.
 const SILENT: &[i64] = &[0, 124, 302, 304, 310, 312, 314, 402, 404, 406, 410];
@@ -55,7 +55,7 @@ pub(super) fn read(cards: &Cards) -> Result<Read, Diagnostics> {
     let mut errors = Diagnostics::new();
     let mut left_out = LeftOut::default();
     let mut curves = Vec::new();
-    let mut parts: BTreeSet<usize> = BTreeSet::new();
+    let (mut parts, mut reached) = (BTreeSet::new(), BTreeSet::new());
     for entry in cards.entries.iter().filter(|entry| entry.kind == 102) {
         match members(cards, entry) {
             Ok(numbers) => parts.extend(numbers),
@@ -83,21 +83,25 @@ pub(super) fn read(cards: &Cards) -> Result<Read, Diagnostics> {
         } else if entry.depends {
             left_out.add(&format!("{name} that is a part of another"), entry.span);
         } else {
-            match curve(cards, entry, 0) {
+            match curve(cards, entry, 0, &mut reached) {
                 Ok(own) => curves.extend(own),
                 Err(error) => errors.extend(error),
             }
         }
     }
     errors.into_result()?;
+    // Curves that are parts of each other have no whole.
+    for entry in cards.entries.iter().filter(|e| parts.contains(&e.number) && !reached.contains(&e.number)) {
+        left_out.add(&format!("entity {} that is a part of what is left out", entry.kind), entry.span);
+    }
     let mut warnings = Diagnostics::new();
     if let Some((scale, span)) = cards.scale {
         let message = format!("the model has the scale {scale}; coordinates are taken as they stand");
         warnings.push(Diagnostic::warning("model-scale", message).at(span, ""));
     }
     let unit = match &cards.unit {
-        super::super::Unit::Stated(mm) => super::super::Unit::Stated(*mm),
-        super::super::Unit::Unknown(why, span) => super::super::Unit::Unknown(why.clone(), *span),
+        Unit::Stated(mm) => Unit::Stated(*mm),
+        Unit::Unknown(why, span) => Unit::Unknown(why.clone(), *span),
     };
     Ok(Read { curves, unit, left_out, warnings })
 }
@@ -105,13 +109,16 @@ pub(super) fn read(cards: &Cards) -> Result<Read, Diagnostics> {
 /// The parameters of an entity, read from the first to the last.
 struct Reader<'c> {
     entry: &'c Entry,
+    /// [`SAME`] in units of the file.
+    same: f64,
     all: Vec<Parameter>,
     at: usize,
 }
 
 impl<'c> Reader<'c> {
     fn of(cards: &Cards, entry: &'c Entry) -> Result<Reader<'c>, Diagnostics> {
-        Ok(Reader { entry, all: cards.parameters(entry)?, at: 0 })
+        let mm = if let Unit::Stated(mm) = cards.unit { mm } else { 1.0 };
+        Ok(Reader { entry, same: SAME / mm, all: cards.parameters(entry)?, at: 0 })
     }
 
     fn next(&mut self) -> Result<Number, Diagnostics> {
@@ -177,7 +184,12 @@ fn matrix(cards: &Cards, entry: &Entry, depth: usize) -> Result<Matrix, Diagnost
 }
 
 /// The curves of an entry, in the coordinates of the model.
-fn curve(cards: &Cards, entry: &Entry, depth: usize) -> Result<Vec<FileCurve>, Diagnostics> {
+fn curve(
+    cards: &Cards,
+    entry: &Entry,
+    depth: usize,
+    reached: &mut BTreeSet<usize>,
+) -> Result<Vec<FileCurve>, Diagnostics> {
     let own = matrix(cards, entry, 0)?;
     let curves = if entry.kind == 102 {
         if DEEPEST < depth {
@@ -190,6 +202,7 @@ fn curve(cards: &Cards, entry: &Entry, depth: usize) -> Result<Vec<FileCurve>, D
                 let message = format!("102 names the entity {number}, which there is none of");
                 return Err(fail("reference-unknown", message, entry.span));
             };
+            reached.insert(number);
             // A point may stand between curves.
             if matches!(part.kind, 116 | 132) {
                 continue;
@@ -198,7 +211,7 @@ fn curve(cards: &Cards, entry: &Entry, depth: usize) -> Result<Vec<FileCurve>, D
                 let message = format!("102 has a part of kind {}, a curve that is not read", part.kind);
                 return Err(fail("curve-unread", message, part.span));
             }
-            curves.extend(curve(cards, part, depth + 1)?);
+            curves.extend(curve(cards, part, depth + 1, reached)?);
             if 1_000_000 < curves.len() {
                 return Err(fail("points-too-many", "102 has more than a million curves", entry.span));
             }
@@ -243,7 +256,7 @@ fn arc(reader: &mut Reader<'_>) -> Result<Path, Diagnostics> {
     let conic = Conic { start, end, ..Conic::new(center, u, v, 0.0, to) };
     let misfit = conic.misfit();
     // What eight printed digits leave of a radius.
-    let most = 1e-6 * (ux * ux + uy * uy).sqrt() + SAME;
+    let most = 1e-6 * (ux * ux + uy * uy).sqrt() + reader.same;
     if most < misfit {
         let message = format!("100 ends {misfit:.3e} beside its circle");
         return Err(fail("arc-misfit", message, reader.entry.span));
@@ -300,8 +313,8 @@ fn parametric(reader: &mut Reader<'_>) -> Result<Path, Diagnostics> {
             }
         }
         if let Some(last) = pieces.last() {
-            let apart = order::gap(&super::super::point(&last.end()), &super::super::point(&points[0]));
-            if SAME < apart {
+            let apart = order::gap(&point(&last.end()), &point(&points[0]));
+            if reader.same < apart {
                 let message = format!("112: a piece starts {apart:.3e} from where the one before ends");
                 return Err(fail("curve-breaks", message, pair[0].1));
             }

@@ -1,7 +1,7 @@
 //! Instances that are curves, and which of them make the path.
 
 use super::model::{Instance, Model, fail};
-use super::text::{Parameter, Value};
+use super::text::Value;
 use super::units;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::front::curves::conic::{Conic, TURN, cross, dot, sweep, unit};
@@ -10,6 +10,7 @@ use crate::front::curves::spline::{Number, Stated, part};
 use crate::front::curves::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 /// How deep curves may be made of others.
@@ -77,11 +78,11 @@ const SHAPES: &[&str] = &[
 pub(super) fn read(model: &Model<'_>) -> Result<Read, Diagnostics> {
     let units = units::of(model)?;
     let mm = if let Unit::Stated(mm) = units.length { mm } else { 1.0 };
-    let reader = Reader { model, angle: units.angle, same: EDGE / mm };
+    let reader = Reader { model, angle: units.angle, same: EDGE / mm, reached: RefCell::default() };
     let mut out = Out {
         curves: Vec::new(),
         errors: Diagnostics::new(),
-        left_out: LeftOut::default(),
+        rest: LeftOut::default(),
         done: BTreeSet::new(),
     };
     let mut used: BTreeSet<u64> = BTreeSet::new();
@@ -91,9 +92,9 @@ pub(super) fn read(model: &Model<'_>) -> Result<Read, Diagnostics> {
             used.extend(model.get(*number, model.span(*number))?.references());
         } else if SHAPES.contains(keyword) {
             faces += usize::from(keyword.ends_with("FACE") || *keyword == "FACE_SURFACE");
-            out.left_out.add(keyword, model.span(*number));
+            out.rest.add(keyword, model.span(*number));
         } else if ["MAPPED_ITEM", "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"].contains(keyword) {
-            out.left_out.add(&format!("{keyword}, which places a part,"), model.span(*number));
+            out.rest.add(&format!("{keyword}, which places a part,"), model.span(*number));
         }
     }
     let of = |wanted: &'static [&'static str]| {
@@ -104,12 +105,12 @@ pub(super) fn read(model: &Model<'_>) -> Result<Read, Diagnostics> {
         for item in set.list(set.parameter(0, 1)?)? {
             let Value::Reference(number) = item.value else { continue };
             let own = model.get(number, set.place(item))?;
-            if reader.is_curve(&own) {
+            if is_curve(&own) {
                 out.take(number, reader.curve(number, set.place(item), 0));
             } else if UNREAD.contains(&own.keyword()) || own.is("LINE") {
                 out.take(number, Err(unread(&own)));
             } else {
-                out.left_out.add(own.keyword(), own.span);
+                out.rest.add(own.keyword(), own.span);
                 out.done.insert(number);
             }
         }
@@ -146,14 +147,21 @@ pub(super) fn read(model: &Model<'_>) -> Result<Read, Diagnostics> {
         } else if UNREAD.contains(keyword) {
             out.take(*number, Err(unread(&model.get(*number, span)?)));
         } else if *keyword == "LINE" && !out.done.contains(number) {
-            out.left_out.add("LINE without ends", span);
+            out.rest.add("LINE without ends", span);
         } else if BOUNDED.contains(keyword)
             || (keyword.is_empty() && model.text(*number).contains("B_SPLINE_CURVE"))
         {
             out.take(*number, reader.curve(*number, span, 0));
         }
     }
-    let Out { curves, errors, left_out, .. } = out;
+    for (number, keyword) in &model.order {
+        // What surfaces are made of, and curves that are parts of each other.
+        if ["TRIMMED_CURVE", "COMPOSITE_CURVE"].contains(keyword) && !reader.reached.borrow().contains(number)
+        {
+            out.rest.add(&format!("{keyword} that is a part of what is left out"), model.span(*number));
+        }
+    }
+    let Out { curves, errors, rest: left_out, .. } = out;
     let mut warnings = errors.into_result()?;
     if 1 < faces
         && let Some(first) = curves.first()
@@ -168,6 +176,10 @@ pub(super) fn read(model: &Model<'_>) -> Result<Read, Diagnostics> {
     Ok(Read { curves, unit: units.length, left_out, warnings })
 }
 
+fn is_curve(own: &Instance<'_>) -> bool {
+    BOUNDED.contains(&own.keyword()) || own.is("B_SPLINE_CURVE") || own.is("EDGE_CURVE")
+}
+
 fn unread(own: &Instance<'_>) -> Diagnostics {
     let message = match own.keyword() {
         "LINE" => format!("#{}, a LINE, has no ends", own.number),
@@ -180,7 +192,7 @@ fn unread(own: &Instance<'_>) -> Diagnostics {
 struct Out {
     curves: Vec<FileCurve>,
     errors: Diagnostics,
-    left_out: LeftOut,
+    rest: LeftOut,
     /// Instances that were taken.
     done: BTreeSet<u64>,
 }
@@ -203,6 +215,8 @@ struct Reader<'m, 't> {
     angle: f64,
     /// Ends of edges, in units of the file.
     same: f64,
+    /// The curves that were read, be it as a part of others.
+    reached: RefCell<BTreeSet<u64>>,
 }
 
 /// The ends of a part of a curve: a parameter, a place or both.
@@ -212,13 +226,10 @@ struct Trim {
 }
 
 impl Reader<'_, '_> {
-    fn is_curve(&self, own: &Instance<'_>) -> bool {
-        BOUNDED.contains(&own.keyword()) || own.is("B_SPLINE_CURVE") || own.is("EDGE_CURVE")
-    }
-
     /// The curves of an instance.
     fn curve(&self, number: u64, from: Span, depth: usize) -> Result<Vec<FileCurve>, Diagnostics> {
         let own = self.model.get(number, from)?;
+        self.reached.borrow_mut().insert(number);
         if DEEPEST < depth {
             let message = format!("#{number} is made of curves within each other without end");
             return Err(fail("reference-unknown", message, own.span));
@@ -291,16 +302,10 @@ impl Reader<'_, '_> {
         let degree = own.number(own.of(keyword, skip)?)?;
         let list = own.list(own.of(keyword, skip + 1)?)?;
         let points: Vec<Point> = list.iter().map(|p| self.model.triple(own, p)).collect::<Result<_, _>>()?;
-        let numbers = |parameter: &Parameter<'_>| -> Result<Vec<Number>, Diagnostics> {
-            match &parameter.value {
-                Value::List(list) => list.iter().map(|p| own.number(p)).collect(),
-                _ => Err(fail("parameter-kind", "a list is wanted here", own.place(parameter))),
-            }
-        };
-        let weights = match own.is("RATIONAL_B_SPLINE_CURVE") {
-            true => numbers(own.of("RATIONAL_B_SPLINE_CURVE", 0)?)?,
-            false => Vec::new(),
-        };
+        let numbers =
+            |parameter| own.list(parameter)?.iter().map(|p| own.number(p)).collect::<Result<Vec<_>, _>>();
+        let rational = own.is("RATIONAL_B_SPLINE_CURVE");
+        let weights = if rational { numbers(own.of("RATIONAL_B_SPLINE_CURVE", 0)?)? } else { Vec::new() };
         let (p, count) = (degree.0, points.len() as f64);
         let knots = if own.is("B_SPLINE_CURVE_WITH_KNOTS") {
             let first = if complex { 0 } else { 6 };
@@ -334,36 +339,11 @@ impl Reader<'_, '_> {
             }
             all
         } else {
-            self.own_knots(own, degree, count)?
+            own_knots(own, degree, count)?
         };
         let stated =
             Stated { kind: "B_SPLINE_CURVE", span: own.span, degree, knots, weights, points, range: None };
         Ok(stated.nurbs()?)
-    }
-
-    /// Knots that follow from the kind.
-    fn own_knots(&self, own: &Instance<'_>, degree: Number, count: f64) -> Result<Vec<Number>, Diagnostics> {
-        let at = |x: f64| (x, own.span);
-        if !(1.0..=5.0).contains(&degree.0) || count <= degree.0 {
-            // What is wrong is told of by whoever makes a curve of it.
-            return Ok(Vec::new());
-        }
-        let (p, n) = (degree.0 as i32, count as i32 - 1);
-        if own.is("UNIFORM_CURVE") {
-            return Ok((-p..=n + 1).map(|i| at(f64::from(i))).collect());
-        }
-        let (spans, inner) = if own.is("BEZIER_CURVE") {
-            if n % p != 0 {
-                let message =
-                    format!("#{}: {} points do not make Bezier curves of degree {p}", own.number, n + 1);
-                return Err(fail("point-count", message, own.span));
-            }
-            (n / p, p)
-        } else {
-            (n - p + 1, 1)
-        };
-        let times = |i: i32| if i == 0 || i == spans { p + 1 } else { inner };
-        Ok((0..=spans).flat_map(|i| std::iter::repeat_n(at(f64::from(i)), times(i) as usize)).collect())
     }
 
     fn composite(&self, own: &Instance<'_>, depth: usize) -> Result<Vec<FileCurve>, Diagnostics> {
@@ -394,7 +374,13 @@ impl Reader<'_, '_> {
                     trim.parameter = Some(own.number(&record.parameters[0])?.0);
                 }
                 Value::Number(_) => trim.parameter = Some(own.number(item)?.0),
-                _ => trim.place = Some(self.model.vertex(own, item)?),
+                Value::Typed(_)
+                | Value::Text(_)
+                | Value::Word(_)
+                | Value::Reference(_)
+                | Value::List(_)
+                | Value::Omitted
+                | Value::Derived => trim.place = Some(self.model.vertex(own, item)?),
             }
         }
         Ok(trim)
@@ -521,6 +507,31 @@ impl Reader<'_, '_> {
         };
         Ok(FileCurve { path, kind: "EDGE_CURVE", span: own.span })
     }
+}
+
+/// Knots that follow from the kind.
+fn own_knots(own: &Instance<'_>, degree: Number, count: f64) -> Result<Vec<Number>, Diagnostics> {
+    let at = |x: f64| (x, own.span);
+    if !(1.0..=5.0).contains(&degree.0) || count <= degree.0 {
+        // What is wrong is told of by whoever makes a curve of it.
+        return Ok(Vec::new());
+    }
+    let (p, n) = (degree.0 as i32, count as i32 - 1);
+    if own.is("UNIFORM_CURVE") {
+        return Ok((-p..=n + 1).map(|i| at(f64::from(i))).collect());
+    }
+    let (spans, inner) = if own.is("BEZIER_CURVE") {
+        if n % p != 0 {
+            let message =
+                format!("#{}: {} points do not make Bezier curves of degree {p}", own.number, n + 1);
+            return Err(fail("point-count", message, own.span));
+        }
+        (n / p, p)
+    } else {
+        (n - p + 1, 1)
+    };
+    let times = |i: i32| if i == 0 || i == spans { p + 1 } else { inner };
+    Ok((0..=spans).flat_map(|i| std::iter::repeat_n(at(f64::from(i)), times(i) as usize)).collect())
 }
 
 /// Curves in a row from the last to the first, each from its end to its start.

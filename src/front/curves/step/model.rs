@@ -145,10 +145,10 @@ impl<'t> Model<'t> {
 
     /// The instance that a parameter names.
     pub(super) fn follow(&self, instance: &Instance<'_>, parameter: &Parameter<'_>) -> Read<Instance<'t>> {
-        match parameter.value {
-            Value::Reference(number) => self.get(number, instance.place(parameter)),
-            _ => Err(instance.wrong(parameter, "the number of an instance")),
-        }
+        let Value::Reference(number) = parameter.value else {
+            return Err(instance.wrong(parameter, "the number of an instance"));
+        };
+        self.get(number, instance.place(parameter))
     }
 
     /// The three coordinates of a CARTESIAN_POINT or a DIRECTION.
@@ -219,27 +219,25 @@ impl<'t> Instance<'t> {
     }
 
     pub(super) fn list<'p>(&self, parameter: &'p Parameter<'t>) -> Read<&'p [Parameter<'t>]> {
-        match &parameter.value {
-            Value::List(list) => Ok(list),
-            _ => Err(self.wrong(parameter, "a list")),
-        }
+        if let Value::List(list) = &parameter.value { Ok(list) } else { Err(self.wrong(parameter, "a list")) }
     }
 
     /// A finite number.
     pub(super) fn number(&self, parameter: &Parameter<'_>) -> Read<Number> {
-        match &parameter.value {
-            Value::Number(x) if x.is_finite() => Ok((*x, self.place(parameter))),
-            _ => Err(self.wrong(parameter, "a finite number")),
+        if let Value::Number(x) = parameter.value
+            && x.is_finite()
+        {
+            return Ok((x, self.place(parameter)));
         }
+        Err(self.wrong(parameter, "a finite number"))
     }
 
     /// A truth value.
     pub(super) fn truth(&self, parameter: &Parameter<'_>) -> Read<bool> {
-        match parameter.value {
-            Value::Word("T") => Ok(true),
-            Value::Word("F") => Ok(false),
-            _ => Err(self.wrong(parameter, ".T. or .F.")),
+        if let Value::Word(word @ ("T" | "F")) = parameter.value {
+            return Ok(word == "T");
         }
+        Err(self.wrong(parameter, ".T. or .F."))
     }
 
     /// All numbers of instances that it names.

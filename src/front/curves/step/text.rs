@@ -3,7 +3,7 @@
 use nom::branch::alt;
 use nom::bytes::complete::{is_not, tag, take_until, take_while, take_while1};
 use nom::character::complete::{char, digit1, multispace1};
-use nom::combinator::{map, opt, recognize, value};
+use nom::combinator::{cut, map, opt, recognize, value};
 use nom::error::{Error, ErrorKind};
 use nom::multi::{many0_count, many1, separated_list0};
 use nom::sequence::{delimited, preceded};
@@ -69,8 +69,11 @@ fn sign<'t>(c: char) -> impl Parser<&'t str, Output = char, Error = Error<&'t st
 }
 
 /// `instance = blanks, reference, blanks, "=", blanks, ( record | complex ), blanks, ";"`
+///
+/// # Errors
+/// The text begins with no instance.
 pub fn instance(input: &str) -> Found<'_, (u64, Vec<Record<'_>>)> {
-    let (input, _) = blanks(input)?;
+    let (input, ()) = blanks(input)?;
     let (input, number) = reference(input)?;
     let (input, _) = sign('=').parse(input)?;
     let (input, records) = alt((map(|input| record(input, 0), |one| vec![one]), complex)).parse(input)?;
@@ -86,7 +89,7 @@ fn complex(input: &str) -> Found<'_, Vec<Record<'_>>> {
 /// `record = keyword, blanks, list`
 fn record(input: &str, depth: usize) -> Found<'_, Record<'_>> {
     let (input, keyword) = keyword(input)?;
-    let (input, _) = blanks(input)?;
+    let (input, ()) = blanks(input)?;
     let (input, parameters) = list(input, depth)?;
     Ok((input, Record { keyword, parameters }))
 }
@@ -105,7 +108,8 @@ fn list(input: &str, depth: usize) -> Found<'_, Vec<Parameter<'_>>> {
     }
     let (input, _) = (char('('), blanks).parse(input)?;
     let (input, all) = separated_list0(sign(','), |input| parameter(input, depth)).parse(input)?;
-    let (input, _) = (blanks, char(')')).parse(input)?;
+    // Nothing else begins like this, so what is wrong is wrong here.
+    let (input, _) = cut((blanks, char(')'))).parse(input)?;
     Ok((input, all))
 }
 

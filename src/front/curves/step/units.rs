@@ -8,16 +8,17 @@ use crate::source::Span;
 /// How deep units may be stated by others.
 const DEEPEST: usize = 8;
 
-/// Prefixes of SI units.
-const PREFIXES: &[(&str, f64)] = &[
-    ("KILO", 1e3),
-    ("HECTO", 1e2),
-    ("DECA", 1e1),
-    ("DECI", 1e-1),
-    ("CENTI", 1e-2),
-    ("MILLI", 1e-3),
-    ("MICRO", 1e-6),
-    ("NANO", 1e-9),
+/// Prefixes of SI units: of themselves, and in thousandths, so that no length is rounded twice.
+const PREFIXES: &[(&str, f64, f64)] = &[
+    ("", 1.0, 1e3),
+    ("KILO", 1e3, 1e6),
+    ("HECTO", 1e2, 1e5),
+    ("DECA", 1e1, 1e4),
+    ("DECI", 1e-1, 1e2),
+    ("CENTI", 1e-2, 1e1),
+    ("MILLI", 1e-3, 1.0),
+    ("MICRO", 1e-6, 1e-3),
+    ("NANO", 1e-9, 1e-6),
 ];
 
 /// The length of a unit and, in radians, the size of its angles.
@@ -46,7 +47,7 @@ pub(super) fn of(model: &Model<'_>) -> Read<Units> {
             let unit = model.follow(&context, parameter)?;
             let span = context.place(parameter);
             if unit.is("LENGTH_UNIT") {
-                let mm = size(model, &unit, "METRE", span, 0)? * 1000.0;
+                let mm = size(model, &unit, "METRE", span, 0)?;
                 match units.length {
                     Unit::Stated(known) if (known - mm).abs() > 1e-9 * mm => {
                         let message =
@@ -68,7 +69,7 @@ pub(super) fn of(model: &Model<'_>) -> Read<Units> {
     Ok(units)
 }
 
-/// How large a unit is in the SI unit of its kind.
+/// How large a unit is: a length in mm, an angle in radians.
 fn size(model: &Model<'_>, unit: &Instance<'_>, base: &str, span: Span, depth: usize) -> Read<f64> {
     let wrong = || fail("units-unreadable", format!("#{} is no unit that is known", unit.number), span);
     if DEEPEST < depth {
@@ -79,13 +80,13 @@ fn size(model: &Model<'_>, unit: &Instance<'_>, base: &str, span: Span, depth: u
         if name != base {
             return Err(wrong());
         }
-        return match unit.of("SI_UNIT", 0)?.value {
-            Value::Omitted => Ok(1.0),
-            Value::Word(prefix) => {
-                PREFIXES.iter().find(|(known, _)| *known == prefix).map(|(_, x)| *x).ok_or_else(wrong)
-            }
-            _ => Err(wrong()),
-        };
+        let parameter = unit.of("SI_UNIT", 0)?;
+        let prefix = if let Value::Word(prefix) = parameter.value { prefix } else { "" };
+        if prefix.is_empty() && parameter.value != Value::Omitted {
+            return Err(wrong());
+        }
+        let (_, one, thousandths) = PREFIXES.iter().find(|(known, ..)| *known == prefix).ok_or_else(wrong)?;
+        return Ok(if base == "METRE" { *thousandths } else { *one });
     }
     if !unit.is("CONVERSION_BASED_UNIT") {
         return Err(wrong());
@@ -95,12 +96,16 @@ fn size(model: &Model<'_>, unit: &Instance<'_>, base: &str, span: Span, depth: u
     let record = measure.records.iter().position(|record| record.parameters.len() == 2).ok_or_else(wrong)?;
     let (count, of) = (measure.parameter(record, 0)?, measure.parameter(record, 1)?);
     let count = match &count.value {
-        Value::Typed(typed) => match &typed.parameters[..] {
-            [one] => measure.number(one)?.0,
-            _ => return Err(wrong()),
-        },
-        _ => measure.number(count)?.0,
+        Value::Typed(typed) => typed.parameters.first().ok_or_else(wrong)?,
+        Value::Number(_)
+        | Value::Text(_)
+        | Value::Word(_)
+        | Value::Reference(_)
+        | Value::List(_)
+        | Value::Omitted
+        | Value::Derived => count,
     };
+    let count = measure.number(count)?.0;
     if !(0.0 < count) {
         return Err(wrong());
     }
