@@ -61,8 +61,10 @@ impl Plot {
             }
         };
         // An input with --to is drawn as the program that is written for the machine.
+        let mut told = Diagnostics::new();
         let understood = match program {
             Some((machine, text)) => {
+                told.extend(intent.as_ref().map_or(Diagnostics::new(), |intent| intent.warnings.clone()));
                 let reading = (machine.dialect.read)(&text, SourceId::PROGRAM, &machine)?;
                 sources.program = Some(Source::new("the program written", text));
                 Understood::Program(Box::new(machine), reading)
@@ -94,11 +96,12 @@ impl Plot {
         }
         let (profiles, summary) = profiles::figures(&track, &options)?;
         figures.extend(profiles);
-        let told = summary.render(&track.axes);
-        let text = drawn(kind, &figures, &told, sources)?;
+        let figured = summary.render(&track.axes);
+        let text = drawn(kind, &figures, &figured, sources)?;
         io::write_file(&self.output, &text)?;
+        console.diagnostics(&told, sources);
         console.diagnostics(&warnings, sources);
-        console.remark(&format!("{}: {} figures\n{told}", self.output, figures.len()));
+        console.remark(&format!("{}: {} figures\n{figured}", self.output, figures.len()));
         Ok(())
     }
 

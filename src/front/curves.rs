@@ -132,6 +132,11 @@ impl LeftOut {
     }
 }
 
+/// One error at its place.
+fn fail(id: &'static str, message: impl Into<String>, span: Span) -> Diagnostics {
+    Diagnostic::error(id, message).at(span, "").into()
+}
+
 /// The format of a file by the end of its name.
 pub fn format_of(name: &str) -> Option<&'static Format> {
     let extension = std::path::Path::new(name).extension()?.to_str()?.to_ascii_lowercase();

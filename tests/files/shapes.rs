@@ -210,8 +210,9 @@ fn curves_of_step() {
     let long = path("#30=TRIMMED_CURVE('',#5,(#11),(#12),.T.,.CARTESIAN.);\n");
     runs(&long, [1., 7., 3.], [6., 2., 3.], on());
     assert_eq!(places(&long).len(), 13);
-    let line =
-        path("#30=TRIMMED_CURVE('',#15,(PARAMETER_VALUE(1.)),(PARAMETER_VALUE(-1.)),.F.,.PARAMETER.);\n");
+    let line = path(
+        "#29=GEOMETRIC_SET('',(#30));\n#30=TRIMMED_CURVE('',#15,(PARAMETER_VALUE(1.)),(PARAMETER_VALUE(-1.)),.F.,.PARAMETER.);\n",
+    );
     runs(&line, [1., 2., 5.], [1., 2., 1.], |p| p[0] - 1.0);
     let edge = path("#30=EDGE_CURVE('',#21,#22,#5,.F.);\n");
     runs(&edge, [1., 7., 3.], [6., 2., 3.], on());

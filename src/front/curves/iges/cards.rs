@@ -1,7 +1,7 @@
 //! Sections, directory and parameters of a file.
 
-use super::super::Unit;
 use super::super::spline::Number;
+use super::super::{Unit, fail};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceId, Span};
 use std::collections::BTreeMap;
@@ -84,10 +84,6 @@ const UNITS: &[(i64, &str, f64)] = &[
     (10, "CM", 10.0),
     (11, "UIN", 25.4e-6),
 ];
-
-fn fail(id: &'static str, message: impl Into<String>, span: Span) -> Diagnostics {
-    Diagnostic::error(id, message).at(span, "").into()
-}
 
 /// Columns `range`, from 0, of a line.
 fn columns(line: &str, range: Range<usize>) -> &str {

@@ -2,7 +2,7 @@
 
 use super::super::conic::{Conic, TURN, sweep};
 use super::super::spline::{Number, Stated};
-use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, order, point};
+use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, fail, order, point};
 use super::cards::{Cards, Entry, Parameter, number};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
@@ -44,10 +44,6 @@ impl Matrix {
             })
         }))
     }
-}
-
-fn fail(id: &'static str, message: impl Into<String>, span: Span) -> Diagnostics {
-    Diagnostic::error(id, message).at(span, "").into()
 }
 
 /// Reads the curves of a file.

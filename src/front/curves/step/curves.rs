@@ -1,13 +1,13 @@
 //! Instances that are curves, and which of them make the path.
 
-use super::model::{Instance, Model, fail};
+use super::model::{Instance, Model};
 use super::text::Value;
 use super::units;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::front::curves::conic::{Conic, TURN, cross, dot, sweep, unit};
 use crate::front::curves::order::gap;
 use crate::front::curves::spline::{Number, Stated, part};
-use crate::front::curves::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit};
+use crate::front::curves::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, fail};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
 use std::cell::RefCell;

@@ -2,8 +2,8 @@
 
 use super::text::{Parameter, Record, Value, instance};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::front::curves::Point;
 use crate::front::curves::spline::Number;
+use crate::front::curves::{Point, fail};
 use crate::source::{SourceId, Span};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -30,8 +30,16 @@ pub(super) struct Instance<'t> {
 
 pub(super) type Read<T> = Result<T, Diagnostics>;
 
-pub(super) fn fail(id: &'static str, message: impl Into<String>, span: Span) -> Diagnostics {
-    Diagnostic::error(id, message).at(span, "").into()
+/// How many bytes of blanks and comments a text begins with.
+fn blanks(text: &str) -> usize {
+    let mut at = 0;
+    loop {
+        at = text.len() - text[at..].trim_start().len();
+        match text[at..].strip_prefix("/*").and_then(|rest| rest.find("*/")) {
+            Some(i) => at += i + 4,
+            None => return at,
+        }
+    }
 }
 
 impl<'t> Model<'t> {
@@ -40,7 +48,8 @@ impl<'t> Model<'t> {
     /// # Errors
     /// It is none after ISO 10303-21, or a part of it is missing.
     pub(super) fn of(text: &'t str, id: SourceId) -> Read<Model<'t>> {
-        let start = text.len() - text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).len();
+        let mark = text.len() - text.trim_start_matches('\u{feff}').len();
+        let start = mark + blanks(&text[mark..]);
         if !text[start..].starts_with("ISO-10303-21") {
             let span = Span::new(id, start..start);
             return Err(fail("step-header", "this file does not begin with ISO-10303-21", span));
@@ -77,16 +86,7 @@ impl<'t> Model<'t> {
 
     /// Takes one statement; whether it is the last.
     fn statement(&mut self, range: Range<usize>) -> Read<bool> {
-        let mut from = range.start;
-        // Blanks and comments before it.
-        loop {
-            let rest = &self.text[from..range.end];
-            from = range.end - rest.trim_start().len();
-            match self.text[from..range.end].strip_prefix("/*").and_then(|rest| rest.find("*/")) {
-                Some(i) => from += i + 4,
-                None => break,
-            }
-        }
+        let from = range.start + blanks(&self.text[range.clone()]);
         let statement = &self.text[from..range.end];
         let Some(rest) = statement.strip_prefix('#') else {
             return Ok(statement.starts_with("END-ISO-10303-21"));

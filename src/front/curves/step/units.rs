@@ -1,8 +1,8 @@
 //! Units of a file: what its contexts assign.
 
-use super::model::{Instance, Model, Read, fail};
+use super::model::{Instance, Model, Read};
 use super::text::Value;
-use crate::front::curves::Unit;
+use crate::front::curves::{Unit, fail};
 use crate::source::Span;
 
 /// How deep units may be stated by others.
