@@ -6,7 +6,6 @@ use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, fai
 use super::cards::{Cards, Entry, Parameter, number};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
-use crate::source::Span;
 use crate::units::MAX_AXES;
 use std::collections::BTreeSet;
 

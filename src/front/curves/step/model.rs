@@ -1,7 +1,7 @@
 //! The instances of a file, by number, each read when it is asked for.
 
 use super::text::{Parameter, Record, Value, instance};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
 use crate::front::curves::spline::Number;
 use crate::front::curves::{Point, fail};
 use crate::source::{SourceId, Span};
