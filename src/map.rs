@@ -8,12 +8,14 @@
 //! ```
 //!
 //! Lines count from 1; `from` is the first and the last line of the statement. Lines that the machine file puts round a
-//! program, and remarks, come from no statement.
+//! program, and remarks, come from no statement. What came from a curve file that the input names has the lines of that
+//! file, which `"file":"outline.dxf"` says then.
 
 use crate::dialect::Reading;
 use crate::ir::{Curve, Cut, Intent, Step, Written};
-use crate::source::{Sources, Span};
+use crate::source::{SourceId, Sources, Span};
 use crate::verify::Report;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Where each line of a text starts.
@@ -38,8 +40,9 @@ impl Lines {
 
 /// The map of a program that was proved, as JSON: `text` is its text, read again as `reading`.
 pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sources: &Sources) -> String {
-    let input = sources.get(crate::source::SourceId::INPUT);
-    let (own, from) = (Lines::of(text), Lines::of(input.map_or("", |source| source.text.as_str())));
+    let input = sources.get(SourceId::INPUT);
+    let own = Lines::of(text);
+    let mut known: BTreeMap<SourceId, (Lines, String)> = BTreeMap::new();
     let blocks = blocks(reading, &own);
     let mut at = 0;
     let mut out = String::with_capacity(40 * blocks.len() + 100);
@@ -54,6 +57,12 @@ pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sou
     let mut first = true;
     for (located, count) in intent.program.steps.iter().zip(&report.blocks) {
         let count = *count as usize;
+        let (from, file) = known.entry(located.span.source).or_insert_with(|| {
+            let source = sources.get(located.span.source);
+            let file = source.filter(|_| located.span.source != SourceId::INPUT);
+            let file = file.map_or(String::new(), |source| format!(",\"file\":{}", name(&source.name)));
+            (Lines::of(source.map_or("", |source| source.text.as_str())), file)
+        });
         let whole = from.lines(located.span);
         for k in 0..count {
             let Some(block) = blocks.get(at + k) else { break };
@@ -73,7 +82,7 @@ pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sou
             };
             let _ = write!(
                 out,
-                "{}\n{{\"line\":{block},\"from\":[{},{}]}}",
+                "{}\n{{\"line\":{block},\"from\":[{},{}]{file}}}",
                 if first { "" } else { "," },
                 from[0],
                 from[1]

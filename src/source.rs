@@ -1,5 +1,6 @@
 //! Named texts and places in them.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Which text of a [`Sources`].
@@ -75,6 +76,8 @@ impl Source {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<Source>,
+    /// What became of the files that the input names, by the names that it has for them.
+    named: BTreeMap<String, Result<SourceId, String>>,
     /// The text behind [`SourceId::PROGRAM`], where a failed compilation left one.
     pub program: Option<Source>,
     /// The table of words that CL data is read with, beside the built-in ones.
@@ -93,6 +96,22 @@ impl Sources {
     pub fn push(&mut self, source: Source) -> SourceId {
         self.files.push(source);
         SourceId(self.files.len() as u32 - 1)
+    }
+
+    /// Adds a file that the input names so, or why it could not be read.
+    pub fn name(&mut self, name: &str, loaded: Result<Source, String>) {
+        let loaded = loaded.map(|source| self.push(source));
+        self.named.insert(name.to_owned(), loaded);
+    }
+
+    /// What became of the file that the input names so; none where nobody looked for it.
+    pub fn named(&self, name: &str) -> Option<Result<SourceId, &str>> {
+        self.named.get(name).map(|loaded| loaded.as_ref().copied().map_err(String::as_str))
+    }
+
+    /// The paths of all texts beside the program.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|source| source.name.as_str())
     }
 
     /// The text behind an id.

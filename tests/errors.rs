@@ -1,8 +1,9 @@
-//! `fixtures/errors/<name>.toml`: a bad input, and beside it in `<name>.stderr` what a user is told.
+//! `fixtures/errors/<name>.toml`: a bad input, perhaps with a bad curve file that it names, and beside it in
+//! `<name>.stderr` what a user is told.
 
-use crate::support::{compare, fail_on, folder};
+use crate::support::{compare, fail_on, folder, sources_in};
 use splinepost::machine::Machine;
-use splinepost::source::{Source, Sources};
+use splinepost::source::Source;
 use splinepost::{Options, compile, front};
 use std::fs;
 
@@ -24,11 +25,17 @@ fn bad_inputs_are_told_of() {
             }
             continue;
         }
+        if front::curves::format_of(&path.display().to_string()).is_some() {
+            if !path.with_extension("toml").exists() {
+                wrong.push(format!("{} is named by no input", path.display()));
+            }
+            continue;
+        }
         cases += 1;
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        let source = Source::new(name, fs::read_to_string(path).expect("UTF-8"));
-        let language = front::detect(&source).expect("a language");
-        let mut sources = Sources::new(source);
+        let text = fs::read_to_string(path).expect("UTF-8");
+        let language = front::detect(&Source::new(name.as_str(), text.as_str())).expect("a language");
+        let mut sources = sources_in(&name, &text, path.parent().expect("a folder"));
         match compile(&sources, language, &machine, &Options::default()) {
             Ok(_) => wrong.push(format!("{} compiles", path.display())),
             Err(failure) => {

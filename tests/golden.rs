@@ -1,9 +1,10 @@
-//! `fixtures/compile/<case>/`: an input and the program of every machine, side by side, compared as bytes.
+//! `fixtures/compile/<case>/`: an input and the program of every machine, side by side, compared as bytes; and
+//! `fixtures/curves/<case>/`, where the input names a curve file with arcs.
 //!
 //! The machines are the default one of each dialect and every `<name>.machine.toml` in the folder; the outputs are
 //! called after them. A missing or a stray file fails.
 
-use crate::support::{compare, compiled, fail_on, folder, machine};
+use crate::support::{compare, compiled, compiled_from, fail_on, folder, machine, sources_in};
 use splinepost::machine::Machine;
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +13,8 @@ use std::fs;
 fn every_case_has_its_programs() {
     let mut wrong = Vec::new();
     let mut cases = 0;
-    for case in fs::read_dir(folder("fixtures/compile")).expect("fixtures/compile").flatten() {
+    let under = |name: &str| fs::read_dir(folder(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    for case in under("fixtures/compile").chain(under("fixtures/curves")).flatten() {
         cases += 1;
         let case = case.path();
         let input = fs::read_to_string(case.join("input.toml")).expect("input.toml");
@@ -31,10 +33,11 @@ fn every_case_has_its_programs() {
             let text = fs::read_to_string(case.join(format!("{name}.machine.toml"))).expect("a machine file");
             machines.push((name.to_owned(), machine(&text)));
         }
-        let mut known = BTreeSet::from(["input.toml".to_owned()]);
+        let sources = sources_in("input.toml", &input, &case);
+        let mut known: BTreeSet<String> = sources.paths().map(ToOwned::to_owned).collect();
         for (name, machine) in &machines {
             let file = format!("{name}.{}", machine.text.extension.to_lowercase());
-            match compiled(&input, machine, None) {
+            match compiled_from(&sources, machine, None) {
                 Ok(output) => compare(&case.join(&file), &output.text, &mut wrong),
                 Err(error) => wrong.push(format!("{}/{file}: {error:?}", case.display())),
             }

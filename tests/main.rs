@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `apt` | CL data of CAM systems, from their text to proved programs |
 //! | `golden` | inputs and every machine's output, side by side, as bytes |
+//! | `files` | curve files: DXF, IGES, STEP |
 //! | `errors` | bad inputs and their rendered diagnostics |
 //! | `paper` | the table of the paper, row by row |
 //! | `roundtrip` | what is written reads back to the same text |
@@ -27,6 +28,7 @@ mod cli;
 mod damage;
 mod errors;
 mod exact;
+mod files;
 mod fits;
 mod golden;
 mod grammar;

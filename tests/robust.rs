@@ -27,7 +27,7 @@ const EXTREMES: [&str; 16] = [
 ];
 
 /// A text with some bytes changed, dropped or doubled.
-fn mutated(text: &str, edits: &[(usize, u8, u8)]) -> String {
+pub(crate) fn mutated(text: &str, edits: &[(usize, u8, u8)]) -> String {
     let mut bytes = text.as_bytes().to_vec();
     for (place, kind, byte) in edits {
         if bytes.is_empty() {
@@ -55,7 +55,7 @@ fn mutated(text: &str, edits: &[(usize, u8, u8)]) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-fn edits() -> impl Strategy<Value = Vec<(usize, u8, u8)>> {
+pub(crate) fn edits() -> impl Strategy<Value = Vec<(usize, u8, u8)>> {
     // Bytes that mean something are more trying than others.
     let byte = prop_oneof![
         4 => prop::sample::select(b"0123456789.,-+=()[]{}\"'~;%/#\n\r\t XYZAFGKNPRSLCE".to_vec()),

@@ -5,7 +5,7 @@ use splinepost::dialect::Motion;
 use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::{Options, Output, compile, front};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A folder of the project.
 pub(crate) fn folder(path: &str) -> PathBuf {
@@ -67,19 +67,55 @@ pub(crate) fn sources(text: &str) -> Sources {
     Sources::new(Source::new("input.toml", text))
 }
 
+/// A text, and the files that it names in a folder, loaded as the command line does.
+pub(crate) fn sources_in(name: &str, text: &str, folder: &Path) -> Sources {
+    let source = Source::new(name, text);
+    let names = front::detect(&source).map_or(Vec::new(), |language| (language.files)(&source));
+    let mut sources = Sources::new(source);
+    for name in names {
+        let loaded = std::fs::read(folder.join(&name));
+        sources.name(&name, loaded.map(|bytes| Source::decode(&name, bytes)).map_err(|e| e.to_string()));
+    }
+    sources
+}
+
+/// A text, and the files that it names, which are no files yet.
+pub(crate) fn sources_with(text: &str, files: &[(&str, &str)]) -> Sources {
+    let mut sources = sources(text);
+    for (name, text) in files {
+        sources.name(name, Ok(Source::new(*name, *text)));
+    }
+    sources
+}
+
+/// Whether a file beside a golden input is a program: neither a TOML file nor one that the input names.
+pub(crate) fn is_program(path: &Path) -> bool {
+    let name = path.display().to_string();
+    path.extension().is_some_and(|extension| extension != "toml") && front::curves::format_of(&name).is_none()
+}
+
 /// Compiles an input of any language.
 pub(crate) fn compiled(
     text: &str,
     machine: &Machine,
     motion: Option<&'static Motion>,
 ) -> Result<Output, Diagnostics> {
+    compiled_from(&sources(text), machine, motion)
+}
+
+/// The same, with the files that the input names.
+pub(crate) fn compiled_from(
+    sources: &Sources,
+    machine: &Machine,
+    motion: Option<&'static Motion>,
+) -> Result<Output, Diagnostics> {
     let options = Options { motion, ..Options::default() };
-    let language = front::detect(&Source::new("input.toml", text))?;
-    compile(&sources(text), language, machine, &options).map_err(|failure| failure.diagnostics)
+    let language = front::detect(sources.get(SourceId::INPUT).expect("an input"))?;
+    compile(sources, language, machine, &options).map_err(|failure| failure.diagnostics)
 }
 
 /// Compares with a file, or writes it where that is asked for.
-pub(crate) fn compare(path: &std::path::Path, actual: &str, wrong: &mut Vec<String>) {
+pub(crate) fn compare(path: &Path, actual: &str, wrong: &mut Vec<String>) {
     let expected = std::fs::read(path).ok();
     if expected.as_deref() == Some(actual.as_bytes()) {
         return;

@@ -50,13 +50,13 @@ impl Compile {
         *sources = Sources::new(io::read_input(&self.input)?);
         self.reading.tell(sources)?;
         let machine = machine(&self.to, sources)?;
+        let language = language(self.from.as_deref(), sources)?;
         if let Some(output) = &self.output
-            && (io::same_file(output, &self.input) || io::same_file(output, &self.to))
+            && (io::is_read(output, sources) || io::same_file(output, &self.to))
         {
             let message = format!("{output} is what is read; it is not written over");
             return Err(Diagnostic::error("output-is-input", message).into());
         }
-        let language = language(self.from.as_deref(), sources)?;
         let options = Options {
             motion: motion(self.motion.as_deref(), &machine)?,
             method: self.method.map(Into::into),
@@ -98,7 +98,14 @@ impl Compile {
 }
 
 /// The language that `--from` names, or that the input looks like; one that does not read Windows-1252 refuses it.
-pub(super) fn language(from: Option<&str>, sources: &Sources) -> Result<&'static Language, Diagnostics> {
+/// The files that the input names are loaded, so that a message about them can point into the input.
+pub(super) fn language(from: Option<&str>, sources: &mut Sources) -> Result<&'static Language, Diagnostics> {
+    let language = language_of(from, sources)?;
+    io::load_named(language, sources);
+    Ok(language)
+}
+
+fn language_of(from: Option<&str>, sources: &Sources) -> Result<&'static Language, Diagnostics> {
     let empty = Source::new("", "");
     let input = sources.get(SourceId::INPUT).unwrap_or(&empty);
     let language = match from {

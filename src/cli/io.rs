@@ -2,7 +2,8 @@
 
 use super::MessageFormat;
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Severity};
-use splinepost::source::{Source, Sources};
+use splinepost::front::Language;
+use splinepost::source::{Source, SourceId, Sources};
 use splinepost::summary::Summary;
 use std::fs;
 use std::io::{self, IsTerminal, Read, Write};
@@ -108,6 +109,29 @@ pub(crate) fn not_utf8(path: &str, line: usize) -> Diagnostics {
 pub(crate) fn read_input(path: &str) -> Result<Source, Diagnostics> {
     let name = if path == "-" { "<stdin>" } else { path };
     Ok(Source::decode(name, read_bytes(path)?))
+}
+
+/// Loads the files that an input names, from where it stands itself; those of standard input from the current folder.
+pub(crate) fn load_named(language: &Language, sources: &mut Sources) {
+    let Some(input) = sources.get(SourceId::INPUT) else { return };
+    let folder = Path::new(&input.name).parent().map(Path::to_owned).unwrap_or_default();
+    for name in (language.files)(input) {
+        if sources.named(&name).is_some() {
+            continue;
+        }
+        let path = folder.join(&name);
+        let bytes = if path.is_dir() {
+            Err("it is a directory".to_owned())
+        } else {
+            fs::read(&path).map_err(|error| error.to_string())
+        };
+        sources.name(&name, bytes.map(|bytes| Source::decode(path.display().to_string(), bytes)));
+    }
+}
+
+/// Whether a file is one of those that were read.
+pub(crate) fn is_read(path: &str, sources: &Sources) -> bool {
+    sources.paths().any(|read| same_file(path, read))
 }
 
 /// A file as a named text.

@@ -3,6 +3,7 @@
 use super::io::{self, Console};
 use super::simulate::{LawArguments, Run};
 use super::subject::{Subject, Understood};
+use splinepost::Options;
 use splinepost::diagnostic::{Diagnostic, Diagnostics};
 use splinepost::front::Language;
 use splinepost::ir::{Intent, Logarithmic};
@@ -11,7 +12,6 @@ use splinepost::plot::{Figure, deviation, page, paper, paths, profiles};
 use splinepost::points::Table;
 use splinepost::simulate::track::{Setting, Track};
 use splinepost::source::{Source, SourceId, Sources};
-use splinepost::{Options, front};
 use std::path::Path;
 
 /// Draw a path: projections, rotary axes, control polygons, deviation, feed, acceleration and curvature
@@ -40,13 +40,13 @@ impl Plot {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         let kind = self.kind()?;
-        if self.subject.is(&self.output)
+        let understood = self.subject.understand(sources)?;
+        if self.subject.is(&self.output, sources)
             || self.against.as_ref().is_some_and(|a| io::same_file(a, &self.output))
         {
             let message = format!("{} is what is read; it is not written over", self.output);
             return Err(Diagnostic::error("output-is-input", message).into());
         }
-        let understood = self.subject.understand(sources)?;
         let (program, intent) = match &understood {
             Understood::Program(..) => (None, self.reference(sources)?),
             Understood::Input(language, intent) => {
@@ -61,8 +61,10 @@ impl Plot {
             }
         };
         // An input with --to is drawn as the program that is written for the machine.
+        let mut told = Diagnostics::new();
         let understood = match program {
             Some((machine, text)) => {
+                told.extend(intent.as_ref().map_or(Diagnostics::new(), |intent| intent.warnings.clone()));
                 let reading = (machine.dialect.read)(&text, SourceId::PROGRAM, &machine)?;
                 sources.program = Some(Source::new("the program written", text));
                 Understood::Program(Box::new(machine), reading)
@@ -94,11 +96,12 @@ impl Plot {
         }
         let (profiles, summary) = profiles::figures(&track, &options)?;
         figures.extend(profiles);
-        let told = summary.render(&track.axes);
-        let text = drawn(kind, &figures, &told, sources)?;
+        let figured = summary.render(&track.axes);
+        let text = drawn(kind, &figures, &figured, sources)?;
         io::write_file(&self.output, &text)?;
+        console.diagnostics(&told, sources);
         console.diagnostics(&warnings, sources);
-        console.remark(&format!("{}: {} figures\n{told}", self.output, figures.len()));
+        console.remark(&format!("{}: {} figures\n{figured}", self.output, figures.len()));
         Ok(())
     }
 
@@ -121,10 +124,19 @@ impl Plot {
     fn reference(&self, sources: &mut Sources) -> Result<Option<Intent>, Diagnostics> {
         let Some(path) = &self.against else { return Ok(None) };
         let source = io::read_source(path)?;
-        let language = front::detect(&source)?;
-        let alone = Sources::new(source.clone());
-        sources.push(source);
-        (language.parse)(&alone).map(Some)
+        let mut alone = Sources::new(source.clone());
+        let parsed = super::compile::language(None, &mut alone).and_then(|language| (language.parse)(&alone));
+        match parsed {
+            Ok(intent) => {
+                sources.push(source);
+                Ok(Some(intent))
+            }
+            Err(errors) => {
+                // What is wrong stands in the input and what it names.
+                *sources = alone;
+                Err(errors)
+            }
+        }
     }
 }
 

@@ -35,8 +35,8 @@ impl Subject {
     pub(super) fn understand(&self, sources: &mut Sources) -> Result<Understood, Diagnostics> {
         *sources = Sources::new(io::read_input(&self.input)?);
         self.reading.tell(sources)?;
-        if let Some(to) = self.machine_of_program(sources)? {
-            let machine = machine(to, sources)?;
+        if let Some(to) = self.machine_of_program(sources)?.map(ToOwned::to_owned) {
+            let machine = machine(&to, sources)?;
             let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
             let machine = machine.for_program(text);
             let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
@@ -46,9 +46,9 @@ impl Subject {
         (language.understand)(sources).map(|intent| Understood::Input(language, Box::new(intent)))
     }
 
-    /// Whether it is this file, or its machine's.
-    pub(super) fn is(&self, path: &str) -> bool {
-        io::same_file(path, &self.input) || self.to.as_ref().is_some_and(|to| io::same_file(path, to))
+    /// Whether it is this file, one that it names, or its machine's.
+    pub(super) fn is(&self, path: &str, sources: &Sources) -> bool {
+        io::is_read(path, sources) || self.to.as_ref().is_some_and(|to| io::same_file(path, to))
     }
 
     /// The machine that --to names.
@@ -58,7 +58,7 @@ impl Subject {
 
     /// The machine of an NC program: that is what the file is where `--from nc` says so, or where a machine is named and
     /// the text is in no language of inputs.
-    fn machine_of_program(&self, sources: &Sources) -> Result<Option<&str>, Diagnostics> {
+    fn machine_of_program(&self, sources: &mut Sources) -> Result<Option<&str>, Diagnostics> {
         let looks_like_input =
             sources.get(SourceId::INPUT).is_some_and(|input| splinepost::front::detect(input).is_ok());
         match (self.from.as_deref(), self.to.as_deref()) {

@@ -28,20 +28,32 @@
 //! | `points` | `points` | straight lines from point to point |
 //! | `expression` | `X` … `C`, `u`, `constants` | X(u), Y(u) … as expressions; angles in radians, rotary axes in degrees |
 //!
+//! A curve may also stand in a file of a CAD system (`files.rs`):
+//!
+//! ```toml
+//! [[curve]]
+//! file = "outline.dxf"           # or .igs, .stp: a path from where the job stands
+//! # units = "mm"                 # where the file does not say
+//! # order = "chain"              # each curve next to the one that it meets
+//! # join = 0.01                  # mm; closes gaps with a straight line
+//! ```
+//!
 //! Curves are run in their order. Where one starts within [`MEET`] of where the one before ended they are joined;
 //! elsewhere the tool retracts between them.
 
 mod curves;
 mod expression;
 mod file;
+mod files;
 mod program;
 
 pub use file::{KEYS, schema};
+pub use files::named;
 pub use program::parse_program;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::Curve;
-use crate::source::{Source, SourceId, Span};
+use crate::source::{SourceId, Sources, Span};
 use crate::tables;
 use crate::units::{Axes, Axis, Kind, MAX_AXES, Position};
 use file::{File, ProcessTable, RetractTable};
@@ -121,7 +133,8 @@ fn rank(axis: Axis) -> (usize, Axis) {
     (b"XYZUVWABC".iter().position(|letter| *letter == first).unwrap_or(9), axis)
 }
 
-struct Reader {
+struct Reader<'s> {
+    sources: &'s Sources,
     source: SourceId,
     diagnostics: Diagnostics,
 }
@@ -130,17 +143,18 @@ struct Reader {
 ///
 /// # Errors
 /// Whatever keeps a path from being made of it, all at once where that makes sense.
-pub fn parse(source: &Source, id: SourceId) -> Result<Job, Diagnostics> {
+pub fn parse(sources: &Sources, id: SourceId) -> Result<Job, Diagnostics> {
+    let source = sources.get(id).ok_or_else(Diagnostics::new)?;
     let text =
         source.text.strip_prefix('\u{feff}').map_or_else(|| source.text.clone(), |rest| format!("   {rest}"));
     let file: File = tables::read(&text, id, KEYS)?;
-    let mut reader = Reader { source: id, diagnostics: Diagnostics::new() };
+    let mut reader = Reader { sources, source: id, diagnostics: Diagnostics::new() };
     let job = reader.job(file, text.len());
     let warnings = reader.diagnostics.into_result()?;
     job.map(|job| Job { warnings, ..job }).ok_or_else(Diagnostics::new)
 }
 
-impl Reader {
+impl Reader<'_> {
     fn span(&self, range: Range<usize>) -> Span {
         Span::new(self.source, range)
     }
@@ -205,7 +219,7 @@ impl Reader {
             );
             return None;
         }
-        let shapes: Vec<curves::Shape> = tables.into_iter().filter_map(|table| self.shape(table)).collect();
+        let shapes: Vec<curves::Shape> = tables.into_iter().flat_map(|table| self.shapes(table)).collect();
         let axes = self.axes(&shapes, process.retract)?;
         if self.diagnostics.has_errors() {
             return None;

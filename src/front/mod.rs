@@ -5,8 +5,10 @@
 //! | [`apt`] | CL data of CATIA, NX, Creo, SolidWorks CAM, Fusion |
 //! | [`cutter`] | a conical cutter as its drawing states it |
 //! | [`job`] | curves, with feed and tool |
+//! | [`curves`] | the curve files that jobs name: DXF, IGES, STEP |
 
 pub mod apt;
+pub mod curves;
 pub mod cutter;
 pub mod job;
 
@@ -24,6 +26,8 @@ pub struct Language {
     pub parse: fn(&Sources) -> Result<Intent, Diagnostics>,
     /// Reads the input as far as it goes: without feed and retract there is a path, but no program.
     pub understand: fn(&Sources) -> Result<Intent, Diagnostics>,
+    /// The files that an input names, as it names them; whoever calls the library loads them ([`Sources::name`]).
+    pub files: fn(&Source) -> Vec<String>,
     /// Whether a text looks like it.
     pub recognise: fn(&str) -> bool,
     /// Whether a text that is not UTF-8 is read as Windows-1252.
@@ -45,15 +49,17 @@ pub const LANGUAGES: &[Language] = &[
         about: "TOML with a [cutter] table: D1, S, C, r, length",
         parse: |sources| cutter::parse_program(input(sources)?, SourceId::INPUT),
         understand: |sources| cutter::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
+        files: no_files,
         recognise: |text| has_table(text, "[cutter]"),
         windows_1252: false,
         grammar: "cutter",
     },
     Language {
         name: "job",
-        about: "TOML with [[curve]] tables: NURBS, Bezier curves, polynomials, points",
-        parse: |sources| job::parse_program(input(sources)?, SourceId::INPUT),
-        understand: |sources| job::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
+        about: "TOML with [[curve]] tables: NURBS, Bezier curves, polynomials, points, expressions, curve files",
+        parse: |sources| job::parse_program(sources, SourceId::INPUT),
+        understand: |sources| job::parse(sources, SourceId::INPUT).map(|job| job.intent()),
+        files: job::named,
         recognise: |text| has_table(text, "[[curve]]") || has_table(text, "[curve]"),
         windows_1252: false,
         grammar: "job",
@@ -63,6 +69,7 @@ pub const LANGUAGES: &[Language] = &[
         about: "CL data of the CAM system that it looks like",
         parse: apt::parse,
         understand: apt::parse,
+        files: no_files,
         recognise: apt::recognise,
         windows_1252: true,
         grammar: "apt",
@@ -79,6 +86,10 @@ pub const LANGUAGES: &[Language] = &[
 
 fn input(sources: &Sources) -> Result<&Source, Diagnostics> {
     sources.get(SourceId::INPUT).ok_or_else(Diagnostics::new)
+}
+
+fn no_files(_: &Source) -> Vec<String> {
+    Vec::new()
 }
 
 /// Whether a line of the text begins a table.
@@ -99,6 +110,7 @@ const fn cl_data(
         about,
         parse,
         understand: parse,
+        files: no_files,
         recognise: |_| false,
         windows_1252: true,
         grammar: "apt",
@@ -125,6 +137,17 @@ pub fn detect(input: &Source) -> Result<&'static Language, Diagnostics> {
     {
         // Said to be TOML: the cutter reader knows best what is missing.
         return find("cutter").ok_or_else(Diagnostics::new);
+    }
+    if let Some(format) = curves::format_of(&input.name) {
+        let message = format!("a {} file has curves, but no feed, tool and place to retract to", format.name);
+        let name = std::path::Path::new(&input.name).file_name().and_then(|name| name.to_str());
+        return Err(Diagnostic::error("curve-file-alone", message)
+            .at(Span::new(SourceId::INPUT, 0..0), "")
+            .hint(format!(
+                "write a job that has them and names the file: [[curve]] file = \"{}\"",
+                name.unwrap_or_default()
+            ))
+            .into());
     }
     let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
     let first = input.text.find('\n').unwrap_or(input.text.len()).min(80);

@@ -7,6 +7,7 @@ use crate::geom::fit::FitError;
 use crate::geom::follow::follow;
 use crate::geom::geometric;
 use crate::ir::{Curve, Cut, Intent, Role, Step};
+use crate::pass::arcs;
 use crate::units::{Axes, Kind, MAX_AXES, Position};
 use std::fmt::Write as _;
 
@@ -47,6 +48,15 @@ impl Points {
         let (mut points, mut deviation, mut number) = (Vec::new(), 0.0f64, 0);
         for located in &intent.program.steps {
             let Step::Cut(Cut { role: Role::Path, curve, .. }) = &located.step else { continue };
+            if let Curve::Arc(arc) = curve {
+                number += 1;
+                // The bound counts what is across and what is along, some 1.6 times the sagitta.
+                let line = arcs::lines(arc, 0.6 * tolerance);
+                points.extend(std::iter::once(line.start).chain(line.points()).map(|p| (number, p)));
+                let turned = arc.sweep().abs() / line.count() as f64;
+                deviation = deviation.max(arcs::sagitta(arc.radius(), turned));
+                continue;
+            }
             let scaled: Vec<Bezier> = curve.pieces().iter().map(|piece| metric.scaled(piece)).collect();
             let Some(chain) = Chain::new(&scaled) else { continue };
             number += 1;
@@ -150,14 +160,14 @@ impl Points {
 mod tests {
     use super::*;
     use crate::front::job;
-    use crate::source::{Source, SourceId};
+    use crate::source::{Source, SourceId, Sources};
 
     #[test]
     fn a_circle_has_the_points_that_its_sagitta_asks_for() {
         let text = "[[curve]]\nkind = \"expression\"\nu = [0, \"2*pi\"]\nX = \"10*cos(u)\"\nY = \"10*sin(u)\"\n\
                     [process]\nfeed = 100\nretract = { axis = \"Z\", to = 50 }\n";
-        let intent =
-            job::parse_program(&Source::new("t", text), SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"));
+        let intent = job::parse_program(&Sources::new(Source::new("t", text)), SourceId::INPUT)
+            .unwrap_or_else(|e| panic!("{e:?}"));
         let points = Points::new(&intent, 0.001).unwrap();
         // R(1 − cos(π/n)) ≤ 0.001 for n ≥ π √(R/0.002) = 222.1; the search aims a little below the tolerance.
         assert!((223..=232).contains(&(points.points.len() - 1)), "{}", points.points.len());

@@ -154,7 +154,7 @@ fn golden_programs_are_recognised() {
     for case in fs::read_dir(folder("fixtures/compile")).expect("fixtures/compile").flatten() {
         for entry in fs::read_dir(case.path()).expect("a case").flatten() {
             let path = entry.path();
-            if path.extension().is_none_or(|extension| extension == "toml") {
+            if !crate::support::is_program(&path) {
                 continue;
             }
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();

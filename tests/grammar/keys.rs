@@ -96,7 +96,7 @@ const LANGUAGES: &[Language] = &[
     (
         "job",
         splinepost::front::job::KEYS,
-        |text| splinepost::front::job::parse(&Source::new("input.toml", text), SourceId::INPUT).err(),
+        |text| splinepost::front::job::parse(&crate::support::sources(text), SourceId::INPUT).err(),
         "",
     ),
     (

@@ -7,11 +7,13 @@
 //! | `recognise` | whether a text is a sentence |
 //! | `generate` | sentences |
 //! | `apt` | CL data: its reader against its grammar |
+//! | `curves` | curve files: their readers against their grammars |
 //! | `dialects` | readers read what the grammar has, writers write nothing else |
 //! | `quotes` | functions quote their rules |
 //! | `keys` | TOML inputs: the keys and kinds of the code |
 
 mod apt;
+mod curves;
 mod dialects;
 mod ebnf;
 mod generate;
@@ -41,7 +43,9 @@ fn every_language_has_a_grammar_and_every_grammar_a_language() {
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     let languages = splinepost::front::LANGUAGES.iter().map(|language| language.grammar);
-    let names = DIALECTS.iter().map(|dialect| dialect.name).chain(languages).chain(["machine"]);
+    let formats = splinepost::front::curves::FORMATS.iter().map(|format| format.grammar);
+    let names =
+        DIALECTS.iter().map(|dialect| dialect.name).chain(languages).chain(formats).chain(["machine"]);
     assert_eq!(found, names.map(|name| format!("{name}.ebnf")).collect());
 }
 

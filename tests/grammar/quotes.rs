@@ -137,6 +137,15 @@ fn the_reader_of_cl_data_quotes_its_rules() {
 }
 
 #[test]
+fn the_reader_of_step_quotes_its_rules() {
+    let grammar = grammar("step");
+    let path = folder("src/front/curves/step/text.rs");
+    let (wrong, quotes) = disagreements(&fs::read_to_string(path).expect("UTF-8"), &grammar);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(8 < quotes, "{quotes} rules are quoted only");
+}
+
+#[test]
 fn a_wrong_quote_is_found() {
     let grammar = Grammar::parse("word = { blank }, \"K\" ; blank = \" \" ;").expect("a grammar");
     let wrong = |source: &str| disagreements(source, &grammar).0.len();

@@ -291,8 +291,7 @@ fn goldens() -> Vec<Golden> {
     let mut names = Vec::new();
     for case in fs::read_dir(folder("fixtures/compile")).expect("fixtures/compile").flatten() {
         for file in fs::read_dir(case.path()).expect("a case").flatten() {
-            let is_program = file.path().extension().is_some_and(|extension| extension != "toml");
-            if is_program {
+            if crate::support::is_program(&file.path()) {
                 names.push(format!(
                     "{}/{}",
                     case.file_name().to_string_lossy(),

@@ -3,6 +3,8 @@
 use super::file::CurveTable;
 use super::{GREATEST, Placed, Reader};
 use crate::diagnostic::Diagnostic;
+use crate::front::curves::Point;
+use crate::front::curves::conic::Conic;
 use crate::geom::bezier::{Bezier, MAX_PIECE_DEGREE};
 use crate::geom::nurbs::{Nurbs, NurbsError};
 use crate::ir::{Curve, Described, Polyline};
@@ -19,6 +21,14 @@ const KINDS: [&str; 5] = ["nurbs", "bezier", "polynomial", "points", "expression
 /// The most points of one curve.
 const MAX_POINTS: usize = 10_000_000;
 
+/// A curve in coordinates of its own.
+pub(super) enum Own {
+    /// Any but an arc.
+    Curve(Curve),
+    /// A part of an ellipse: an arc where its plane is one of the machine's.
+    Conic(Conic),
+}
+
 /// A curve in the coordinates that it names.
 pub(super) struct Shape {
     /// The coordinates of its points.
@@ -26,7 +36,7 @@ pub(super) struct Shape {
     /// Where other axes stand.
     pub(super) at: Vec<(Axis, f64)>,
     /// The curve, its coordinates in the order of `axes`.
-    curve: Curve,
+    pub(super) curve: Own,
     /// Where it stands in the file.
     pub(super) span: Span,
 }
@@ -48,11 +58,25 @@ impl Shape {
             }
             point
         };
-        let (curve, start, end) = match self.curve {
+        let own = match self.curve {
+            Own::Curve(curve) => curve,
+            Own::Conic(conic) => {
+                let conic = conic.mapped(&|p: &Point| place(&[p[0], p[1], p[2], 0.0, 0.0, 0.0]));
+                let spatial = ["X", "Y", "Z"]
+                    .iter()
+                    .enumerate()
+                    .all(|(i, name)| i < axes.count() && axes.name(i).as_str() == *name);
+                let arc = if spatial { conic.arc().map(Curve::Arc) } else { None };
+                let curve = arc.unwrap_or_else(|| Curve::Polynomial(conic.pieces()));
+                return Placed { curve, start: conic.start, end: conic.end, span: self.span };
+            }
+        };
+        let (curve, start, end) = match own {
             Curve::Lines(line) => {
                 let start = place(&line.start);
                 let mut placed = Polyline::new(start, axes.count());
                 placed.values.reserve(line.count() * axes.count());
+                placed.lines.clone_from(&line.lines);
                 let mut end = start;
                 for point in line.points() {
                     end = place(&point);
@@ -91,16 +115,24 @@ impl Shape {
                 let (start, end) = (pieces[0].start(), pieces[pieces.len() - 1].end());
                 (Curve::Formula(described), start, end)
             }
-            // No kind of curve makes these.
+            // No kind of curve makes these; arcs of files are placed above.
             curve @ (Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
         };
         Placed { curve, start, end, span: self.span }
     }
 }
 
-impl Reader {
+impl Reader<'_> {
+    /// The curves of a table: one, or those of its file.
+    pub(super) fn shapes(&mut self, table: Spanned<CurveTable>) -> Vec<Shape> {
+        if table.get_ref().file.is_some() {
+            return self.file(&table).unwrap_or_default();
+        }
+        self.shape(table).into_iter().collect()
+    }
+
     /// The curve of a table.
-    pub(super) fn shape(&mut self, table: Spanned<CurveTable>) -> Option<Shape> {
+    fn shape(&mut self, table: Spanned<CurveTable>) -> Option<Shape> {
         let range = table.span();
         let table = table.into_inner();
         // The header of the table, so that a thousand points are not shown for one message.
@@ -108,9 +140,9 @@ impl Reader {
         let Some(kind) = &table.kind else {
             self.hinted(
                 "key-missing",
-                "[[curve]] has no `kind`".to_owned(),
+                "[[curve]] has neither `kind` nor `file`".to_owned(),
                 head,
-                format!("kind is one of {}", KINDS.join(", ")),
+                format!("kind is one of {}; file names a DXF, IGES or STEP file", KINDS.join(", ")),
             );
             return None;
         };
@@ -142,12 +174,13 @@ impl Reader {
             return None;
         }
         let span = self.span(head);
-        Some(Shape { axes, at, curve, span })
+        Some(Shape { axes, at, curve: Own::Curve(curve), span })
     }
 
     /// Keys that this kind of curve has no use for.
-    fn needless(&mut self, table: &CurveTable, kind: &str) {
+    pub(super) fn needless(&mut self, table: &CurveTable, kind: &str) {
         let used: &[&str] = match kind {
+            "file" => &["file", "axes", "units", "order", "join"],
             "nurbs" => &["axes", "degree", "knots", "points", "weights"],
             "bezier" => &["axes", "degree", "points", "weights"],
             "polynomial" => &["axes", "coefficients", "range"],
@@ -156,6 +189,10 @@ impl Reader {
         };
         let expressions = table.expressions().map(|(name, text)| (name, text.as_ref().map(Spanned::span)));
         let present = [
+            ("kind", table.kind.as_ref().map(Spanned::span).filter(|_| kind == "file")),
+            ("units", table.units.as_ref().map(Spanned::span)),
+            ("order", table.order.as_ref().map(Spanned::span)),
+            ("join", table.join.as_ref().map(Spanned::span)),
             ("axes", table.axes.as_ref().map(Spanned::span)),
             ("u", table.u.as_ref().map(Spanned::span)),
             ("constants", table.constants.as_ref().map(Spanned::span)),
@@ -171,13 +208,16 @@ impl Reader {
                 && !used.contains(&key)
             {
                 let range = range.start..range.end.min(range.start + 1);
-                let message = format!("a curve of kind \"{kind}\" has no {key}");
+                let message = match kind {
+                    "file" => format!("a curve of a file has no {key}"),
+                    _ => format!("a curve of kind \"{kind}\" has no {key}"),
+                };
                 self.hinted("key-needless", message, range, format!("its keys are {}", used.join(", ")));
             }
         }
     }
 
-    fn own_axes(&mut self, table: &CurveTable, head: Range<usize>) -> Option<Vec<Axis>> {
+    pub(super) fn own_axes(&mut self, table: &CurveTable, head: Range<usize>) -> Option<Vec<Axis>> {
         let Some(names) = &table.axes else {
             self.hinted(
                 "key-missing",
@@ -203,7 +243,7 @@ impl Reader {
         Some(axes)
     }
 
-    fn at(&mut self, table: &CurveTable, own: &[Axis]) -> Vec<(Axis, f64)> {
+    pub(super) fn at(&mut self, table: &CurveTable, own: &[Axis]) -> Vec<(Axis, f64)> {
         let Some(at) = &table.at else { return Vec::new() };
         let mut places = Vec::new();
         for (name, value) in at.get_ref() {

@@ -28,7 +28,7 @@ fn within(text: &Spanned<String>, inner: &Range<usize>) -> Range<usize> {
     }
 }
 
-impl Reader {
+impl Reader<'_> {
     /// The axes and the curve of a table of kind "expression".
     pub(super) fn expression(
         &mut self,

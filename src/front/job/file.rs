@@ -16,6 +16,10 @@ pub const KEYS: &[Key] = &[
         "curve",
         &[
             Key::value("kind"),
+            Key::value("file"),
+            Key::value("units"),
+            Key::value("order"),
+            Key::value("join"),
             Key::value("axes"),
             Key::value("at"),
             Key::value("degree"),
@@ -77,10 +81,23 @@ pub(super) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CurveTable {
-    /// What the numbers mean.
+    /// What the numbers mean; a curve file needs none.
     #[schemars(with = "Option<String>", extend("enum" = ["nurbs", "bezier", "polynomial", "points", "expression"]))]
     pub(super) kind: Option<Spanned<String>>,
-    /// The coordinates of a point, in order: X Y Z U V W in mm, A B C in degrees.
+    /// Instead of `kind`: a DXF, IGES or STEP file with curves; its path, from where this file stands.
+    #[schemars(with = "Option<String>")]
+    pub(super) file: Option<Spanned<String>>,
+    /// The unit of that file, where it does not say. Default: what it says.
+    #[schemars(with = "Option<String>", extend("enum" = ["mm", "cm", "m", "inch"]))]
+    pub(super) units: Option<Spanned<String>>,
+    /// Whether the curves of that file are run as they stand in it, or each next to the one that it meets. Default file.
+    #[schemars(with = "Option<String>", extend("enum" = ["file", "chain"]))]
+    pub(super) order: Option<Spanned<String>>,
+    /// Gaps between the curves of that file up to this, mm, are closed by a straight line. Default none.
+    #[schemars(with = "Option<f64>")]
+    pub(super) join: Option<Spanned<f64>>,
+    /// The coordinates of a point, in order: X Y Z U V W in mm, A B C in degrees. Default of a curve file: X Y Z, or X Y where
+    /// all of it has z = 0.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) axes: Option<Spanned<Vec<Spanned<String>>>>,
     /// Where other axes stand on this curve. Default: where the curve before left them.

@@ -16,7 +16,7 @@ use super::{Job, MEET, Placed, parse};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
 use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step};
-use crate::source::{Source, SourceId};
+use crate::source::{SourceId, Sources};
 use crate::units::Position;
 
 /// Gaps below this look as if the curves were meant to meet, mm or degrees.
@@ -26,8 +26,8 @@ const SMALL_GAP: f64 = 0.05;
 ///
 /// # Errors
 /// As [`parse`]; also where feed or retract is missing, or where the retract position is not clear of the curves.
-pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostics> {
-    let job = parse(source, id)?;
+pub fn parse_program(sources: &Sources, id: SourceId) -> Result<Intent, Diagnostics> {
+    let job = parse(sources, id)?;
     let mut found = Diagnostics::new();
     let mut missing = |id, what: &str, line: &str| {
         found.push(
@@ -76,8 +76,13 @@ impl Job {
                     pieces.iter().flat_map(Bezier::control_points).for_each(take);
                 }
                 Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(take),
+                Curve::Arc(arc) => {
+                    let (low, high) = arc.range();
+                    take(&low);
+                    take(&high);
+                }
                 // No job has these.
-                Curve::Logarithmic(_) | Curve::Arc(_) => {}
+                Curve::Logarithmic(_) => {}
             }
             // A curve that rests there was warned of.
             if own != (to, to) {
@@ -116,6 +121,8 @@ impl Job {
             let start = &section[0];
             if let Some(last) = last
                 && gap(&last.end, &start.start) < SMALL_GAP
+                // Gaps between the curves of a file are told of where it is read.
+                && start.span.source == self.process.span.source
             {
                 let message = format!(
                     "curves {} and {number} are {:.2e} apart, and so the tool retracts between them",

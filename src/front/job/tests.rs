@@ -2,13 +2,14 @@
 
 use super::*;
 use crate::ir::{Cut, Intent, Role, Step};
+use crate::source::Source;
 
 const PROCESS: &str = "[process]\nfeed = 1000\nretract = { axis = \"Z\", to = 50 }\n";
 const QUARTER: &str = "[[curve]]\nkind = \"nurbs\"\naxes = [\"X\", \"Y\"]\nat = { Z = -2 }\ndegree = 2\n\
     knots = [0, 0, 0, 1, 1, 1]\npoints = [[10, 0], [10, 10], [0, 10]]\nweights = [1, 0.7071067811865476, 1]\n";
 
 fn intent(text: &str) -> Result<Intent, Diagnostics> {
-    parse_program(&Source::new("t", text), SourceId::INPUT)
+    parse_program(&Sources::new(Source::new("t", text)), SourceId::INPUT)
 }
 
 fn ids(text: &str) -> Vec<&'static str> {
@@ -75,7 +76,7 @@ fn an_axis_that_nobody_places_is_asked_for() {
 fn a_polynomial_is_taken_about_its_start() {
     let text = "[[curve]]\nkind = \"polynomial\"\naxes = [\"X\", \"Z\"]\nrange = [1, 3]\n\
         coefficients = [[0, 1], [5, 0, -1, 0.5]]\n";
-    let job = parse(&Source::new("t", text), SourceId::INPUT).unwrap();
+    let job = parse(&Sources::new(Source::new("t", text)), SourceId::INPUT).unwrap();
     let Curve::Polynomial(pieces) = &job.curves[0].curve else { panic!("{:?}", job.curves[0].curve) };
     // z = 5 − u² + u³/2: 4.5 at u = 1, 5 at u = 2, 9.5 at u = 3.
     for (t, x, z) in [(0.0, 1.0, 4.5), (0.5, 2.0, 5.0), (1.0, 3.0, 9.5)] {
@@ -89,7 +90,7 @@ fn a_polynomial_is_taken_about_its_start() {
 fn bezier_curves_stand_in_a_row() {
     let text = "[[curve]]\nkind = \"bezier\"\naxes = [\"X\", \"Y\"]\ndegree = 2\n\
         points = [[0, 0], [1, 1], [2, 0], [3, -1], [4, 0]]\nweights = [1, 2, 1, 0.5, 1]\n";
-    let job = parse(&Source::new("t", text), SourceId::INPUT).unwrap();
+    let job = parse(&Sources::new(Source::new("t", text)), SourceId::INPUT).unwrap();
     let Curve::Polynomial(pieces) = &job.curves[0].curve else { panic!("{:?}", job.curves[0].curve) };
     assert_eq!((pieces.len(), pieces[1].weights[1]), (2, 0.5));
     assert_eq!(pieces[0].end(), pieces[1].start());
@@ -131,7 +132,7 @@ fn what_is_wrong_is_named() {
 fn expressions_are_stood_for_within_their_bound() {
     let text = "[[curve]]\nkind = \"expression\"\nat = { X = 3 }\nu = [\"-pi/2\", 1]\nconstants = { r = 2.0 }\n\
                 Z = \"r*sin(u)\"\nA = \"deg(u)\"\n";
-    let source = Source::new("t", text);
+    let source = Sources::new(Source::new("t", text));
     let job = parse(&source, SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"));
     let placed = &job.curves[0];
     let Curve::Formula(described) = &placed.curve else { panic!("{:?}", placed.curve) };
