@@ -7,7 +7,7 @@ use splinepost::source::{Source, Sources};
 use splinepost::summary::Summary;
 use std::fs;
 use std::io::{self, IsTerminal, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Where messages go and how they look.
@@ -133,19 +133,35 @@ pub(crate) fn same_file(a: &str, b: &str) -> bool {
         && fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
+/// Links that lead on farther than this lead in a circle.
+const MOST_LINKS: usize = 40;
+
 /// Writes a file beside its target and renames it, so that it is there whole or not at all. Its mode is kept, links are
 /// followed, a device or pipe is written directly.
 pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
     if path.is_empty() {
         return Err(Diagnostic::error("output-failed", "the output file has no name").into());
     }
-    let target = fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
-    if target.is_dir() {
+    if Path::new(path).is_dir() {
         return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
     }
-    replace(&target, text)
+    followed(Path::new(path))
+        .and_then(|target| replace(&target, text))
         .with_context(|| format!("cannot write {path}"))
         .map_err(|error| failed("output-failed", &error))
+}
+
+/// Where a path leads through its links; the last of them may lead to a file that is not there yet.
+fn followed(path: &Path) -> anyhow::Result<PathBuf> {
+    if let Ok(target) = fs::canonicalize(path) {
+        return Ok(target);
+    }
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    anyhow::bail!("it is a link that leads nowhere")
 }
 
 fn replace(target: &Path, text: &str) -> anyhow::Result<()> {
@@ -172,7 +188,10 @@ fn replace(target: &Path, text: &str) -> anyhow::Result<()> {
     let mut file = builder.prefix(".splinepost-").tempfile_in(folder).map_err(plain).with_context(beside)?;
     file.write_all(text.as_bytes()).map_err(plain)?;
     if let Some(old) = &old {
-        file.as_file().set_permissions(old.permissions()).map_err(plain).context("its mode cannot be kept")?;
+        file.as_file()
+            .set_permissions(old.permissions())
+            .map_err(plain)
+            .context("its mode cannot be kept")?;
     }
     file.as_file().sync_all().map_err(plain)?;
     file.persist(target).map_err(|error| plain(error.error)).context("the new file cannot take its place")?;

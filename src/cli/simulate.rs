@@ -139,7 +139,8 @@ impl Simulate {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         let understood = self.subject.understand(sources)?;
-        let Run { track, options, warnings } = self.law.run_of(&understood, &self.subject, sources, false, None)?;
+        let Run { track, options, warnings } =
+            self.law.run_of(&understood, &self.subject, sources, false, None)?;
         let format = match self.format {
             Format::Csv => rows::Format::Csv,
             Format::Json => rows::Format::Json,

@@ -186,15 +186,17 @@ pub fn figures(track: &Track, cutter: Option<&LogCurve>) -> Vec<Figure> {
         }
     }
     let mut figures: Vec<Figure> = views.iter().map(|view| view.figure(track, &path, true)).collect();
-    if let (Some(figure), [x, y, z]) =
-        (figures.iter_mut().find(|figure| figure.id == "spatial"), &linear[..])
+    if let (Some(figure), [x, y, z]) = (figures.iter_mut().find(|figure| figure.id == "spatial"), &linear[..])
     {
         let [x, y, z] = [x, y, z].map(|i| (axes.name(*i).to_string(), extent(&path, *i)));
-        figure.series.splice(0..0, frame([&x.1, &y.1, &z.1]).map(|points| Series {
-            name: format!("{}, {}, {}", told(&x), told(&y), told(&z)),
-            style: Style::Thin,
-            points,
-        }));
+        figure.series.splice(
+            0..0,
+            frame([&x.1, &y.1, &z.1]).map(|points| Series {
+                name: format!("{}, {}, {}", told(&x), told(&y), told(&z)),
+                style: Style::Thin,
+                points,
+            }),
+        );
     }
     if let Some(curve) = cutter.copied() {
         let on_cutter = View {

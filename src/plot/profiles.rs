@@ -188,13 +188,7 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
         figure.add(axes.name(i).to_string(), Style::Line, profile.finish());
     }
     figures.extend([linear, rotary]);
-    figures.push(single(
-        "curvature",
-        curvature_of(track),
-        "1/mm",
-        "curvature",
-        collector.curvature,
-    ));
+    figures.push(single("curvature", curvature_of(track), "1/mm", "curvature", collector.curvature));
     figures.push(single(
         "feed-error",
         "Feed error: |chord - asked|/asked",

@@ -253,9 +253,10 @@ impl Blocks {
                 let each = stretch.time / splines as f64 * 1e3;
                 let enough = if block_time <= each { "at full feed" } else { "still too short" };
                 let blocks = if splines == 1 { "block" } else { "blocks" };
+                let does = if splines == 1 { "does" } else { "do" };
                 let _ = writeln!(
                     text,
-                    "                as splines (--fit, or a flute's own --motion) {splines} cubic {blocks} of {each:.1} ms do: {enough}"
+                    "                as splines (--fit, or a flute's own --motion) {splines} cubic {blocks} of {each:.1} ms {does}: {enough}"
                 );
             }
             None => {

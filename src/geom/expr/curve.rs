@@ -61,7 +61,11 @@ impl std::fmt::Display for FormulaError {
 /// A parameter in seven figures.
 fn place(u: f64) -> String {
     let seven: f64 = format!("{u:.6e}").parse().unwrap_or(u);
-    if seven == 0.0 || (1e-4..1e9).contains(&seven.abs()) { (seven + 0.0).to_string() } else { format!("{seven:e}") }
+    if seven == 0.0 || (1e-4..1e9).contains(&seven.abs()) {
+        (seven + 0.0).to_string()
+    } else {
+        format!("{seven:e}")
+    }
 }
 
 impl Formula {
