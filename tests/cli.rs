@@ -258,7 +258,7 @@ fn lists_and_dumps_are_printed() {
 fn cl_data_goes_the_same_way() {
     let folder = tempfile::tempdir().expect("a folder");
     let within = folder.path();
-    let input = folder("fixtures/apt/creo-pocket/input.ncl").display().to_string();
+    let input = crate::support::folder("fixtures/apt/creo-pocket/input.ncl").display().to_string();
     let run = |arguments: &[&str]| splinepost(arguments, within);
     let output = run(&["compile", &input, "--to", "mazak", "-o", "P.EIA", "--map", "P.json"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
