@@ -238,6 +238,13 @@ impl<'p, C: Parametric> Cycles<'p, C> {
         let enough = self.law.tolerance * asked;
         let guess = guess.unwrap_or_else(taylor);
         let next = root(excess, (u, begun - asked), piece.to, guess, enough, self.law.method)?;
+        // Where the end is the target as well, nothing is left behind it.
+        if next < piece.to && piece.to - next <= 2.0 * self.law.tolerance * (next - u) {
+            let end = piece.curve.at(piece.to);
+            if (chord(&end) - asked).abs() <= enough {
+                return Some((piece.to, end));
+            }
+        }
         Some(if seen.0 == next { seen } else { (next, piece.curve.at(next)) })
     }
 
