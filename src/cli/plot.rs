@@ -69,7 +69,7 @@ impl Plot {
             }
             None => understood,
         };
-        let radius = intent.as_ref().map(|intent| intent.radius());
+        let radius = intent.as_ref().map(Intent::radius);
         let Run { track, options, warnings } =
             self.law.run_of(&understood, &self.subject, sources, true, radius)?;
         let machine = match &understood {
