@@ -167,6 +167,7 @@ pub fn compile(
         match attempt.run(&intent) {
             Ok(Attempted { text, report, setup, warnings: found }) => {
                 warnings.extend(found);
+                warnings.extend(pass::stretch::varying(&intent, &machine));
                 warnings.extend(pass::approximate::notes(&intent, motion.form, &machine, !attempt.exact));
                 if let Some(report) = &report {
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
@@ -304,6 +305,7 @@ pub fn verify_program(
     verify::same_form(text, &(machine.dialect.write)(&legal.value, &machine), program)?;
     let mut warnings = intent.warnings.clone();
     warnings.extend(reading.warnings);
+    warnings.extend(pass::stretch::varying(&intent, &machine));
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
     Ok(Verified { report, intent, tolerance, warnings })
 }

@@ -6,7 +6,6 @@
 //! | [`shape`] | curves in the form that is quickest to evaluate |
 //! | [`track`] | a program as pieces to run |
 //! | [`limits`], [`profile`], [`planned`] | what the axes can do, the feed profile that keeps it, and its cycles |
-//! | [`spans`] | as how many cubic blocks a chain of lines would do |
 //! | [`report`] | how long, how well, where worst |
 //! | [`rows`] | cycles as CSV and JSON |
 //!
@@ -21,10 +20,10 @@ pub mod profile;
 pub mod report;
 pub mod rows;
 pub mod shape;
-pub mod spans;
 pub mod track;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::smooth;
 use crate::units::Position;
 use limits::Limits;
 use partition::{Cycle, Cycles, Law, Parametric, Piece};
@@ -224,13 +223,15 @@ impl Simulation<'_, '_> {
     }
 }
 
-/// As how many cubic blocks lines would do; none where they are no lines.
+/// As how many blocks of a spline `--fit` would write lines; none where they are no lines, or a spline has no fewer.
 fn instead(pieces: &[Piece<Shape>], tolerance: f64) -> Option<usize> {
-    let mut points = Vec::with_capacity(pieces.len() + 1);
+    let scale = pieces.first()?.surface.0.map(|weight| if weight == 0.0 { 1.0 } else { weight });
+    let scaled = |p: Position| std::array::from_fn(|i| scale[i] * p[i]);
+    let mut points: Vec<Position> = Vec::with_capacity(pieces.len() + 1);
     for piece in pieces {
         let Shape::Line(from, _) = piece.curve else { return None };
-        points.push(from);
+        points.push(scaled(from));
     }
-    points.extend(pieces.last().map(|piece| piece.curve.at(piece.to)));
-    Some(spans::cubics(&points, tolerance))
+    points.extend(pieces.last().map(|piece| scaled(piece.curve.at(piece.to))));
+    smooth::spline(&points, tolerance).map(|spline| spline.beziers().count())
 }

@@ -127,7 +127,7 @@ pub fn verify(
             return Err(Diagnostic::refusal(id, message).into());
         }
     }
-    if decimals.program.name != intent.program.name {
+    if machine.has_name() && decimals.program.name != intent.program.name {
         let message =
             format!("the program is called `{}`, not `{}`", decimals.program.name, intent.program.name);
         return Err(Diagnostic::refusal("name-differs", message).into());

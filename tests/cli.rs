@@ -152,6 +152,34 @@ fn coarse_steps_are_warned_of_and_written() {
 }
 
 #[test]
+fn a_curve_whose_speed_varies_is_warned_of() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let job = folder("fixtures/compile/lissajous/input.toml").display().to_string();
+    let told = |machine: &str| {
+        let output = splinepost(&["compile", &job, "--to", machine], dir.path());
+        assert_eq!(code(&output), 0);
+        stderr(&output)
+    };
+    // With w degrees of A for a radian of u, F counts √(v² + w²) where v is the speed by u along X and Y: the ratio of the
+    // two is greatest where v is least. v² = 900 sin²u + 3600 cos²2u is least where cos 2u = 1/16, greatest at u = π/2.
+    let w = 180.0 / std::f64::consts::PI;
+    let slow = (450.0 * (1.0 - 1.0 / 16.0) + 3600.0 / 256.0f64).sqrt();
+    let fast = (900.0 + 3600.0f64).sqrt();
+    let ratio = |v: f64| (v * v + w * w).sqrt() / v;
+    assert!(ratio(fast) < ratio(slow));
+    for machine in ["heidenhain", "mazak"] {
+        let told = told(machine);
+        let figure = told.split("the speed is up to ").nth(1).expect("a warning[feed-varies]");
+        let percent: f64 = figure.split(' ').next().expect("a figure").parse().expect("a number");
+        // F is such that the time holds, so the mean ratio lies between both: farther off than either end it cannot be.
+        let most = 100.0 * (ratio(slow) / ratio(fast) - 1.0);
+        assert!(5.0 < percent && percent < most, "{percent} {most}");
+        assert!(told.contains(&format!("error = {}", percent.ceil() / 100.0)), "{told}");
+    }
+    assert!(!told("sinumerik").contains("feed-varies"));
+}
+
+#[test]
 fn a_closed_pipe_is_no_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_splinepost"))
         .args(["compile", &mill(), "--to", "sinumerik", "--motion", "linear"])
@@ -190,6 +218,27 @@ fn an_existing_file_keeps_its_mode_and_links_are_followed() {
     assert!(fs::read_to_string(&target).expect("text").starts_with("; CONE10"));
     let output = splinepost(&["compile", &mill(), "--to", "sinumerik", "-o", "/dev/null"], dir.path());
     assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_leads_to_a_file_that_is_not_there_yet() {
+    use std::os::unix::fs::symlink;
+    let dir = tempfile::tempdir().expect("a folder");
+    symlink("new.mpf", dir.path().join("link.mpf")).expect("linked");
+    symlink("gone/new.mpf", dir.path().join("lost.mpf")).expect("linked");
+    symlink("circle.mpf", dir.path().join("circle.mpf")).expect("linked");
+    let written = |name: &str| splinepost(&["compile", &mill(), "--to", "sinumerik", "-o", name], dir.path());
+    assert_eq!(code(&written("link.mpf")), 0);
+    assert!(dir.path().join("link.mpf").is_symlink());
+    assert!(fs::read_to_string(dir.path().join("new.mpf")).expect("text").starts_with("; CONE10"));
+    for (name, why) in [("lost.mpf", "there is no folder gone"), ("circle.mpf", "leads nowhere")] {
+        let output = written(name);
+        let told = stderr(&output);
+        assert_eq!(code(&output), 2, "{told}");
+        assert!(told.contains("output-failed") && told.contains(why), "{told}");
+        assert!(dir.path().join(name).is_symlink());
+    }
 }
 
 #[test]

@@ -1,13 +1,14 @@
 //! Files, standard streams and the end of the program.
 
 use super::MessageFormat;
+use anyhow::Context;
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Severity};
 use splinepost::front::Language;
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::summary::Summary;
 use std::fs;
 use std::io::{self, IsTerminal, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Where messages go and how they look.
@@ -70,25 +71,23 @@ impl Console {
     }
 }
 
-fn failed(id: &'static str, what: &str, path: &str, error: &io::Error) -> Diagnostics {
-    Diagnostic::error(id, format!("{what} {path}: {error}")).into()
+/// What a file or a stream did as a diagnostic: what was tried, then why that failed, down to the system's word.
+fn failed(id: &'static str, error: &anyhow::Error) -> Diagnostics {
+    Diagnostic::error(id, format!("{error:#}")).into()
 }
 
 /// The bytes of a file, or of standard input for `-`.
 fn read_bytes(path: &str) -> Result<Vec<u8>, Diagnostics> {
-    let mut bytes = Vec::new();
-    let result = if path == "-" {
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| ())
-    } else {
-        if Path::new(path).is_dir() {
-            return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
-        }
-        fs::read(path).map(|read| bytes = read)
-    };
-    match result {
-        Ok(()) => Ok(bytes),
-        Err(error) => Err(failed("file-unreadable", "cannot read", path, &error)),
+    if path != "-" && Path::new(path).is_dir() {
+        return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
     }
+    let mut bytes = Vec::new();
+    let read = if path == "-" {
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes).context("cannot read standard input")
+    } else {
+        fs::read(path).with_context(|| format!("cannot read {path}"))
+    };
+    read.map_err(|error| failed("file-unreadable", &error))
 }
 
 /// The text of a file, which must be UTF-8.
@@ -144,10 +143,10 @@ pub(crate) fn read_source(path: &str) -> Result<Source, Diagnostics> {
 pub(crate) fn print(text: &str) -> Result<(), Diagnostics> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(failed("output-failed", "cannot write to", "standard output", &error))
-        }
-        _ => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written
+            .context("cannot write to standard output")
+            .map_err(|error| failed("output-failed", &error)),
     }
 }
 
@@ -158,51 +157,67 @@ pub(crate) fn same_file(a: &str, b: &str) -> bool {
         && fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
+/// Links that lead on farther than this lead in a circle.
+const MOST_LINKS: usize = 40;
+
 /// Writes a file beside its target and renames it, so that it is there whole or not at all. Its mode is kept, links are
 /// followed, a device or pipe is written directly.
 pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
-    // Of the error the kind alone: its text may name the file beside the target.
-    let fail =
-        |error: &io::Error| failed("output-failed", "cannot write", path, &io::Error::from(error.kind()));
     if path.is_empty() {
         return Err(Diagnostic::error("output-failed", "the output file has no name").into());
     }
-    let target = fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
-    let old = fs::metadata(&target).ok();
-    if let Some(old) = &old
-        && !old.is_file()
-    {
-        if old.is_dir() {
-            return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
-        }
-        return fs::write(&target, text).map_err(|error| fail(&error));
+    if Path::new(path).is_dir() {
+        return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
+    }
+    followed(Path::new(path))
+        .and_then(|target| replace(&target, text))
+        .with_context(|| format!("cannot write {path}"))
+        .map_err(|error| failed("output-failed", &error))
+}
+
+/// Where a path leads through its links; the last of them may lead to a file that is not there yet.
+fn followed(path: &Path) -> anyhow::Result<PathBuf> {
+    if let Ok(target) = fs::canonicalize(path) {
+        return Ok(target);
+    }
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    anyhow::bail!("it is a link that leads nowhere")
+}
+
+fn replace(target: &Path, text: &str) -> anyhow::Result<()> {
+    let old = fs::metadata(target).ok();
+    if old.as_ref().is_some_and(|old| !old.is_file()) {
+        return Ok(fs::write(target, text)?);
     }
     // A file that may not be written to is not replaced behind its owner's back.
     if old.is_some() {
-        fs::OpenOptions::new().write(true).open(&target).map_err(|error| fail(&error))?;
-    }
-    let missing = target.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
-    if let Some(folder) = missing {
-        let message = format!("cannot write {path}: there is no folder {}", folder.display());
-        return Err(Diagnostic::error("output-failed", message).into());
+        fs::OpenOptions::new().write(true).open(target)?;
     }
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || -> io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        if old.is_none() {
-            use std::os::unix::fs::PermissionsExt;
-            // As `open` makes files: the umask takes its share.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.prefix(".splinepost-").tempfile_in(folder)?;
-        file.write_all(text.as_bytes())?;
-        if let Some(old) = &old {
-            file.as_file().set_permissions(old.permissions())?;
-        }
-        file.as_file().sync_all()?;
-        file.persist(&target)?;
-        Ok(())
-    };
-    write().map_err(|error| fail(&error))
+    anyhow::ensure!(folder.is_dir(), "there is no folder {}", folder.display());
+    // Of an error the kind alone: its text may name the file beside the target.
+    let plain = |error: io::Error| io::Error::from(error.kind());
+    let beside = || format!("no new file can stand in {}", folder.display());
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    if old.is_none() {
+        use std::os::unix::fs::PermissionsExt;
+        // As `open` makes files: the umask takes its share.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.prefix(".splinepost-").tempfile_in(folder).map_err(plain).with_context(beside)?;
+    file.write_all(text.as_bytes()).map_err(plain)?;
+    if let Some(old) = &old {
+        file.as_file()
+            .set_permissions(old.permissions())
+            .map_err(plain)
+            .context("its mode cannot be kept")?;
+    }
+    file.as_file().sync_all().map_err(plain)?;
+    file.persist(target).map_err(|error| plain(error.error)).context("the new file cannot take its place")?;
+    Ok(())
 }

@@ -71,7 +71,9 @@ impl Plot {
             }
             None => understood,
         };
-        let Run { track, options, warnings } = self.law.run_of(&understood, &self.subject, sources, true)?;
+        let radius = intent.as_ref().map(Intent::radius);
+        let Run { track, options, warnings } =
+            self.law.run_of(&understood, &self.subject, sources, true, radius)?;
         let machine = match &understood {
             Understood::Program(machine, _) => Some(machine.as_ref()),
             Understood::Input(..) => None,

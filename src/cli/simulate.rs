@@ -90,20 +90,22 @@ pub(super) struct Run {
 }
 
 impl LawArguments {
-    /// The track of an input or a program, and how it is run.
+    /// The track of an input or a program, and how it is run. `radius` is where a program's rotary axes count, mm, where
+    /// that is known.
     pub(super) fn run_of(
         &self,
         understood: &Understood,
         subject: &Subject,
         sources: &mut Sources,
         polygons: bool,
+        radius: Option<f64>,
     ) -> Result<Run, Diagnostics> {
         let own;
         let (mut track, machine, tolerance, warnings) = match understood {
             Understood::Program(machine, reading) => {
                 let tolerance = machine.tolerance;
                 let setting =
-                    Setting { machine: Some(machine), feed: self.feed, tolerance, radius: None, polygons };
+                    Setting { machine: Some(machine), feed: self.feed, tolerance, radius, polygons };
                 let track = Track::of_decimals(&reading.value.decimals, &setting)?;
                 (track, Some(machine.as_ref()), tolerance, reading.warnings.clone())
             }
@@ -137,7 +139,8 @@ impl Simulate {
     /// Runs it.
     pub(crate) fn run(&self, console: &Console, sources: &mut Sources) -> Result<(), Diagnostics> {
         let understood = self.subject.understand(sources)?;
-        let Run { track, options, warnings } = self.law.run_of(&understood, &self.subject, sources, false)?;
+        let Run { track, options, warnings } =
+            self.law.run_of(&understood, &self.subject, sources, false, None)?;
         let format = match self.format {
             Format::Csv => rows::Format::Csv,
             Format::Json => rows::Format::Json,

@@ -4,6 +4,7 @@ use super::compile::Reading as CommandReading;
 use super::{io, machine};
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Warned};
 use splinepost::dialect::Reading;
+use splinepost::dialect::frame::with_named_axes;
 use splinepost::front::Language;
 use splinepost::ir::Intent;
 use splinepost::machine::Machine;
@@ -39,6 +40,7 @@ impl Subject {
             let machine = machine(&to, sources)?;
             let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
             let machine = machine.for_program(text);
+            let machine = with_named_axes(text, &machine).unwrap_or(machine);
             let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
             return Ok(Understood::Program(Box::new(machine), reading));
         }

@@ -7,6 +7,7 @@ use crate::ir::{Auxiliary, Shift, Step};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 use crate::source::Span;
+use crate::units::{Axes, Axis, Kind};
 use std::ops::Range;
 
 /// Where a reader stands among the fixed lines of the machine file.
@@ -408,3 +409,24 @@ fn words(text: &str, assembler: &Assembler) -> Option<Vec<Shift<Decimal>>> {
         })
         .collect()
 }
+
+/// The machine with the axes that a program tells of, where its header names the linear ones (`{linear}`): those, and all
+/// that are not linear. Who has the input knows them; a program alone may have fewer than its machine.
+pub fn with_named_axes(text: &str, machine: &Machine) -> Option<Machine> {
+    let named = |line: &&Template| line.variables().any(|variable| variable == "linear");
+    let template = machine.frame.header.iter().find(named)?;
+    let value = text.lines().take(MOST_HEADER).find_map(|line| {
+        let line = line.trim();
+        let numbered =
+            line.strip_prefix('N').map(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()));
+        let values = template.matched(numbered.unwrap_or(line).trim_start())?;
+        values.into_iter().find(|(variable, _)| variable == "linear").map(|(_, value)| value)
+    })?;
+    let names: Vec<&str> = value.split(',').collect();
+    let known = |(axis, kind): &&(Axis, Kind)| *kind != Kind::Linear || names.contains(&axis.as_str());
+    let axes: Vec<(Axis, Kind)> = machine.axes.as_slice().iter().filter(known).copied().collect();
+    machine.with_axes(&Axes::new(&axes)?).ok()
+}
+
+/// A header is not longer.
+const MOST_HEADER: usize = 1000;

@@ -48,6 +48,8 @@ pub struct Dialect {
     pub naming: (&'static str, fn(&str) -> bool),
     /// How parameters of a program are spelled.
     pub parameter: Parameter,
+    /// What every program takes for granted, so that no line round it may say otherwise.
+    pub granted: &'static [Granted],
     /// Whether F can be inverse time.
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
@@ -79,6 +81,16 @@ pub enum Round {
     Step,
     /// The place within 0 to 360: the control takes the short way.
     Place,
+}
+
+/// Something that every program takes for granted.
+pub struct Granted {
+    /// What.
+    pub what: &'static str,
+    /// The words that say so.
+    pub right: &'static [&'static str],
+    /// The words that say otherwise.
+    pub wrong: &'static [&'static str],
 }
 
 /// How parameters of a program are spelled.

@@ -134,7 +134,8 @@ pub(super) struct File {
     /// Its axes.
     pub(super) axes: Option<AxesFile>,
     /// What each axis can do, by its name.
-    pub(super) axis: Option<BTreeMap<String, AxisFile>>,
+    #[schemars(with = "Option<BTreeMap<String, AxisFile>>")]
+    pub(super) axis: Option<BTreeMap<Spanned<String>, AxisFile>>,
     /// Decimals.
     pub(super) digits: Option<DigitsFile>,
     /// Spelling.
@@ -236,9 +237,11 @@ pub(super) struct TextFile {
     /// G1 X30 F200 instead of G1X30F200.
     pub(super) spaces: Option<bool>,
     /// The first block number.
-    pub(super) number_start: Option<u32>,
+    #[schemars(with = "Option<u32>")]
+    pub(super) number_start: Option<Spanned<u32>>,
     /// What it grows by; 0 for no numbers.
-    pub(super) number_step: Option<u32>,
+    #[schemars(with = "Option<u32>")]
+    pub(super) number_step: Option<Spanned<u32>>,
     /// Whether comments have block numbers too.
     pub(super) number_comments: Option<bool>,
     /// lf or crlf.

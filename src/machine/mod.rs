@@ -140,7 +140,14 @@ impl Machine {
 
     /// Whether programs say their number.
     pub fn has_number(&self) -> bool {
-        self.frame.header.iter().any(|line| line.variables().any(|variable| variable == "number"))
+        says(&self.frame.header, "number")
+    }
+
+    /// Whether programs say their name.
+    pub fn has_name(&self) -> bool {
+        [&self.frame.header, &self.frame.footer, &self.frame.close]
+            .into_iter()
+            .any(|lines| says(lines, "name"))
     }
 
     /// The names of the linear axes, separated by commas.
@@ -159,6 +166,11 @@ impl Machine {
     pub fn axes_without_spline(&self, moving: &[Axis]) -> Vec<Axis> {
         moving.iter().copied().filter(|axis| !self.splines_move(*axis)).collect()
     }
+}
+
+/// Whether a variable stands in some lines.
+fn says(lines: &[template::Template], variable: &str) -> bool {
+    lines.iter().any(|line| line.variables().any(|known| known == variable))
 }
 
 #[cfg(test)]
@@ -182,15 +194,42 @@ mod tests {
 
     #[test]
     fn wrong_values_are_reported_together() {
-        let text =
-            "extends = \"sinumerik\"\nmotion = \"spl\"\n[digits]\nlinear = 12\n[spline]\npoly_degree = 9\n";
+        let text = "extends = \"sinumerik\"\nmotion = \"spl\"\n[digits]\nlinear = 12\n[text]\nnumber_step = 100000000\n[spline]\npoly_degree = 9\n";
         let ids: Vec<&str> =
             Machine::parse(text, SourceId::INPUT).unwrap_err().0.iter().map(|d| d.id).collect();
-        assert_eq!(ids, ["motion-unknown", "digits-range", "degree-range"]);
+        assert_eq!(ids, ["motion-unknown", "digits-range", "block-number-range", "degree-range"]);
         assert_eq!(
             Machine::parse("extends = \"fanuk\"", SourceId::INPUT).unwrap_err().0[0].id,
             "machine-unknown"
         );
         assert!(Machine::parse("", SourceId::INPUT).unwrap_err().has_errors());
+    }
+    #[test]
+    fn lines_round_a_program_leave_it_as_it_takes_itself_to_be() {
+        let told = |dialect: &str, key: &str, lines: &str| {
+            let text = format!("extends = \"{dialect}\"\n[program]\n{key} = [{lines}]\n");
+            Machine::parse(&text, SourceId::INPUT).map_or_else(|e| e.0[0].message.clone(), |_| String::new())
+        };
+        let refused = [
+            ("mazak", "header", "\"O{number}({name})\", \"G91\"", "G91"),
+            ("mazak", "home", "\"G91 G28 Z{home}\"", "G91"),
+            ("mazak", "header", "\"G17G20G90\"", "G20"),
+            ("mazak", "tool", "\"T{tool} M6\", \"g95\"", "G95"),
+            ("sinumerik", "header", "\"G90 G700\"", "G700"),
+            ("sinumerik", "footer", "\"G19\", \"M30\"", "G19"),
+            ("heidenhain", "header", "\"0 BEGIN PGM {name} INCH\"", "INCH"),
+        ];
+        for (dialect, key, lines, word) in refused {
+            let message = told(dialect, key, lines);
+            assert!(message.contains(&format!("`{word}`")), "{lines}: {message}");
+        }
+        let allowed = [
+            ("mazak", "home", "\"G91 G28 Z{home}\", \"G90\""),
+            ("mazak", "header", "\"G91 G28 X0 G90 (G91 IS OVER)\""),
+            ("sinumerik", "header", "\"; {name}, NO G91\", \"G910\", \"R91=1\""),
+        ];
+        for (dialect, key, lines) in allowed {
+            assert_eq!(told(dialect, key, lines), "", "{lines}");
+        }
     }
 }

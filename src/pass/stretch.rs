@@ -16,7 +16,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
 use crate::geom::elementary::ln_1p;
 use crate::geom::logcurve::{LogCurve, Measure};
-use crate::ir::{Curve, Logarithmic};
+use crate::ir::{Curve, Cut, Intent, Logarithmic, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::{Axes, DEGREES, Kind};
 
@@ -69,6 +69,36 @@ pub fn of_curve(curve: &Curve, feed: f64, axes: &Axes, machine: &Machine, radius
         }
     }
     (feed * mean, error)
+}
+
+/// What is said of the curve whose speed varies most, where that is more than the machine file's `error`: such curves are
+/// not cut for their feed.
+pub fn varying(intent: &Intent, machine: &Machine) -> Diagnostics {
+    let radius = intent.radius();
+    let mut worst = (machine.feed_error, None);
+    for located in &intent.program.steps {
+        let Step::Cut(Cut { feed: Some(feed), role: Role::Path, curve }) = &located.step else { continue };
+        if matches!(curve, Curve::Logarithmic(_)) {
+            continue;
+        }
+        let (_, error) = of_curve(curve, *feed, &intent.program.axes, machine, radius);
+        if worst.0 < error {
+            worst = (error, Some(located.span));
+        }
+    }
+    let mut warnings = Diagnostics::new();
+    if let (error, Some(span)) = worst {
+        let message = format!(
+            "along this curve the speed is up to {:.1} percent off what was asked: F counts its rotary axes too",
+            100.0 * error
+        );
+        let hint = format!(
+            "a curve has one F: state several shorter ones, or let it be with error = {} under [feed] of the machine file",
+            (100.0 * error).ceil() / 100.0
+        );
+        warnings.push(Diagnostic::warning("feed-varies", message).at(span, "").hint(hint));
+    }
+    warnings
 }
 
 /// What a degree counts on a machine, mm.

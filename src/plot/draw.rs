@@ -3,8 +3,17 @@
 use super::{Figure, Series, Style};
 use plotters::prelude::*;
 
-/// The size of a drawing in its own units.
+/// The size of a drawing.
 pub const SIZE: (u32, u32) = (1200, 800);
+
+/// The library puts every point on a whole number, so it draws this many times larger than what is shown.
+const FINE: u32 = 5;
+
+/// The length of a line in the legend.
+const LEGEND: i32 = 24 * FINE as i32;
+
+/// The radius of a dot.
+const DOT: i32 = 4 * FINE as i32;
 
 /// Colours that are told apart also by those who see few.
 const COLORS: [RGBColor; 6] = [
@@ -105,43 +114,64 @@ fn corner(figure: &Figure, [[left, right], [bottom, top]]: [[f64; 2]; 2]) -> Ser
 /// # Errors
 /// What the drawing library says.
 pub fn svg(figure: &Figure) -> Result<String, DrawError> {
-    let mut text = String::new();
-    draw(figure, &mut text).map_err(|error| DrawError(error.to_string()))?;
-    Ok(text)
-}
-
-fn draw(figure: &Figure, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
+    let failed = |error: Box<dyn std::error::Error>| DrawError(error.to_string());
     let mut extent = extent(figure);
     if figure.equal {
-        // What margins and labels leave of the drawing.
-        extent = equal(extent, (1080.0, 640.0));
+        // What the title, the labels and the margins leave of the drawing shows in one that is thrown away.
+        let room = draw(figure, extent, &mut String::new()).map_err(failed)?;
+        extent = equal(extent, (f64::from(room.0), f64::from(room.1)));
     }
+    let mut text = String::new();
+    draw(figure, extent, &mut text).map_err(failed)?;
+    let (width, height) = SIZE;
+    let drawn = format!("width=\"{}\" height=\"{}\"", width * FINE, height * FINE);
+    Ok(text.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1))
+}
+
+fn font(size: u32) -> (&'static str, u32) {
+    ("sans-serif", size * FINE)
+}
+
+/// Draws a figure, and says how large the area between its axes is.
+fn draw(
+    figure: &Figure,
+    extent: [[f64; 2]; 2],
+    text: &mut String,
+) -> Result<(u32, u32), Box<dyn std::error::Error>> {
+    let root = SVGBackend::with_string(text, (SIZE.0 * FINE, SIZE.1 * FINE)).into_drawing_area();
+    root.fill(&WHITE)?;
     let [[left, right], [bottom, top]] = extent;
     let mut chart = ChartBuilder::on(&root)
-        .caption(&figure.title, ("sans-serif", 26))
-        .margin(16)
-        .x_label_area_size(54)
-        .y_label_area_size(86)
+        .caption(&figure.title, font(26))
+        .margin(16 * FINE)
+        .x_label_area_size(54 * FINE)
+        .y_label_area_size(86 * FINE)
         .build_cartesian_2d(left..right, bottom..top)?;
+    let room = chart.plotting_area().dim_in_pixel();
     chart
         .configure_mesh()
         .x_desc(&figure.labels[0])
         .y_desc(&figure.labels[1])
-        .axis_desc_style(("sans-serif", 20))
-        .label_style(("sans-serif", 17))
+        .axis_desc_style(font(20))
+        .label_style(font(17))
+        .axis_style(ShapeStyle::from(&BLACK).stroke_width(FINE))
+        .set_all_tick_mark_size(5 * FINE)
+        .max_light_lines(4)
         .x_label_formatter(&|x| tick(*x, right - left))
         .y_label_formatter(&|y| tick(*y, top - bottom))
-        .light_line_style(RGBColor(240, 240, 240))
-        .bold_line_style(RGBColor(220, 220, 220))
+        .light_line_style(ShapeStyle::from(&RGBColor(242, 242, 242)).stroke_width(FINE))
+        .bold_line_style(ShapeStyle::from(&RGBColor(220, 220, 220)).stroke_width(FINE))
         .draw()?;
-    for (i, series) in figure.series.iter().enumerate() {
-        let color = if series.style == Style::Thin { GREY } else { COLORS[i % COLORS.len()] };
+    let mut colors = COLORS.iter().cycle();
+    for series in &figure.series {
+        let color = match series.style {
+            Style::Thin => &GREY,
+            Style::Line | Style::Dots => colors.next().unwrap_or(&BLACK),
+        };
         match series.style {
             Style::Line | Style::Thin => {
                 let width = if series.style == Style::Line { 2 } else { 1 };
-                let style = ShapeStyle::from(&color).stroke_width(width);
+                let style = ShapeStyle::from(color).stroke_width(width * FINE);
                 let mut named = false;
                 for part in parts(series) {
                     let drawn = chart.draw_series(LineSeries::new(part, style))?;
@@ -149,28 +179,30 @@ fn draw(figure: &Figure, text: &mut String) -> Result<(), Box<dyn std::error::Er
                         named = true;
                         drawn
                             .label(&series.name)
-                            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 24, y)], style));
+                            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + LEGEND, y)], style));
                     }
                 }
             }
             Style::Dots => {
                 let points = series.points.iter().filter(|p| p[0].is_finite() && p[1].is_finite());
                 chart
-                    .draw_series(points.map(|p| Circle::new((p[0], p[1]), 4, color.filled())))?
+                    .draw_series(points.map(|p| Circle::new((p[0], p[1]), DOT, color.filled())))?
                     .label(&series.name)
-                    .legend(move |(x, y)| Circle::new((x + 12, y), 4, color.filled()));
+                    .legend(move |(x, y)| Circle::new((x + LEGEND / 2, y), DOT, color.filled()));
             }
         }
     }
     chart
         .configure_series_labels()
         .background_style(WHITE.mix(0.85))
-        .border_style(GREY)
-        .label_font(("sans-serif", 18))
+        .border_style(ShapeStyle::from(&GREY).stroke_width(FINE))
+        .legend_area_size(LEGEND + 6 * FINE as i32)
+        .margin(10 * FINE)
+        .label_font(font(18))
         .position(corner(figure, extent))
         .draw()?;
     root.present()?;
-    Ok(())
+    Ok(room)
 }
 
 /// The parts of a line between points that are no numbers.
@@ -185,6 +217,7 @@ fn parts(series: &Series) -> impl Iterator<Item = Vec<(f64, f64)>> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::elementary::{cos, sin};
 
     #[test]
     fn ticks_have_the_digits_that_tell_them_apart() {
@@ -202,6 +235,30 @@ mod tests {
     }
 
     #[test]
+    fn a_circle_is_round() {
+        let turn = |i: i32| std::f64::consts::TAU * f64::from(i) / 360.0;
+        let mut figure = Figure::new("f", "a circle in a corner", ["X, mm", "Y, mm"]);
+        figure.equal = true;
+        let round = (0..=360).map(|i| [30.0 + 10.0 * cos(turn(i)), 10.0 * sin(turn(i))]).collect();
+        figure.add("circle", Style::Line, round);
+        figure.add("far away", Style::Line, vec![[-60.0, 4.0], [0.0, 4.0]]);
+        let text = svg(&figure).unwrap();
+        let lines = text.split("points=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        let points = lines.max_by_key(|points| points.len()).expect("a line");
+        let place = |pair: &str| {
+            let (x, y) = pair.split_once(',').expect("two numbers");
+            [x, y].map(|x| x.parse::<f64>().expect("a number"))
+        };
+        let places: Vec<[f64; 2]> = points.split_whitespace().map(place).collect();
+        let span = |axis: usize| {
+            let of = || places.iter().map(|p| p[axis]);
+            of().fold(f64::NEG_INFINITY, f64::max) - of().fold(f64::INFINITY, f64::min)
+        };
+        // Each end of both spans is on a whole number, and so is the size of the drawing's area.
+        assert!((span(0) - span(1)).abs() <= 4.0 && 1000.0 < span(0), "{} {}", span(0), span(1));
+    }
+
+    #[test]
     fn the_same_figure_has_the_same_bytes() {
         let mut figure = Figure::new("f", "title & more", ["X, mm", "Y, mm"]);
         figure.add(
@@ -216,7 +273,7 @@ mod tests {
         assert_eq!(text, svg(&figure).unwrap());
         assert!(text.starts_with("<svg") && text.contains("title &amp; more"), "{text}");
         // Two parts of the line, and one in the legend.
-        assert_eq!(text.matches("stroke-width=\"2\"").count(), 3, "{text}");
+        assert_eq!(text.matches("stroke-width=\"10\"").count(), 3, "{text}");
         assert!(text.contains("<circle"));
     }
 }

@@ -29,15 +29,8 @@ pub fn html(title: &str, figures: &[Figure], summary: &str) -> Result<String, Dr
     }
     let _ = write!(page, "</nav>\n<pre>{}</pre>\n", escaped(summary));
     for figure in figures {
-        let (width, height) = SIZE;
-        let drawing = svg(figure)?.replacen(
-            "<svg ",
-            &format!(
-                "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\" ",
-                escaped(&figure.title)
-            ),
-            1,
-        );
+        let named = format!("<svg role=\"img\" aria-label=\"{}\" ", escaped(&figure.title));
+        let drawing = svg(figure)?.replacen("<svg ", &named, 1);
         let _ = write!(page, "<figure id=\"{}\">\n{drawing}</figure>\n", figure.id);
     }
     page.push_str("</body>\n</html>\n");

@@ -1,9 +1,10 @@
 //! What a track looks like: its projections, the rotary axes against X, control polygons and block ends.
 
-use super::{Figure, Style};
-use crate::geom::elementary::{cos, sin};
+use super::{Figure, Series, Style};
+use crate::geom::elementary::{acos, cos, sin};
 use crate::geom::logcurve::LogCurve;
-use crate::simulate::partition::Parametric;
+use crate::simulate::partition::{Parametric, Piece, difference};
+use crate::simulate::shape::Shape;
 use crate::simulate::track::{Event, Track};
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 
@@ -13,12 +14,37 @@ const MOST_POINTS: usize = 20_000;
 /// The most block ends and control points that are drawn.
 const MOST_DOTS: usize = 2_000;
 
-/// Samples of a curved piece.
-const SAMPLES: usize = 64;
+/// In how many parts a curved piece is looked at.
+const PARTS: usize = 64;
+
+/// A curve is drawn by lines that turn by no more than 3 degrees: where the curve has a radius of 300 on the drawing,
+/// they leave it by 300 (1 − cos 1.5°) = 0.1.
+const TURN: f64 = 3.0 / DEGREES;
+
+/// In how many equal parts of its parameter a piece is drawn: all its turns within [`TURN`], up to `most`.
+fn parts(piece: &Piece<Shape>, most: usize) -> usize {
+    if piece.curve.is_line() {
+        return 1;
+    }
+    let at = |k: usize| piece.curve.at(piece.from + (piece.to - piece.from) * k as f64 / PARTS as f64);
+    let metric = &piece.surface;
+    let mut turn = 0.0f64;
+    let mut last: Option<Position> = None;
+    for k in 0..PARTS {
+        let chord = difference(&at(k + 1), &at(k));
+        if let Some(before) = last.replace(chord) {
+            let cosine = metric.dot(&before, &chord) / (metric.norm(&before) * metric.norm(&chord));
+            if cosine.is_finite() {
+                turn = turn.max(acos(cosine.clamp(-1.0, 1.0)));
+            }
+        }
+    }
+    ((PARTS as f64 * turn / TURN).ceil() as usize).clamp(8, 1024).min(most)
+}
 
 /// Positions along a track; a gap between runs is a position of NaN.
 pub fn samples(track: &Track) -> Vec<Position> {
-    let each = (MOST_POINTS / track.pieces.len().max(1)).clamp(1, SAMPLES);
+    let most = (MOST_POINTS / track.pieces.len().max(1)).max(1);
     // Where even the ends are too many, every so many pieces.
     let stride = track.pieces.len().div_ceil(MOST_POINTS).max(1);
     let mut points = Vec::new();
@@ -32,10 +58,10 @@ pub fn samples(track: &Track) -> Vec<Position> {
             if i == range.start {
                 points.push(piece.curve.at(piece.from));
             }
-            let count = if piece.curve.is_line() { 1 } else { each };
             if (i - range.start) % stride != 0 && i + 1 != range.end {
                 continue;
             }
+            let count = parts(piece, most);
             for k in 1..=count {
                 points.push(piece.curve.at(piece.from + (piece.to - piece.from) * k as f64 / count as f64));
             }
@@ -88,6 +114,32 @@ fn spatial(p: [f64; 3]) -> [f64; 2] {
     [(p[0] - p[1]) * a, p[2] * b + (p[0] + p[1]) * c]
 }
 
+/// The least and the greatest of one coordinate.
+fn extent(path: &[Position], axis: usize) -> [f64; 2] {
+    let finite = path.iter().map(|p| p[axis]).filter(|x| x.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// `X 0 to 30`.
+fn told((name, [low, high]): &(String, [f64; 2])) -> String {
+    // Adding zero takes the sign off a negative zero.
+    let number = |x: f64| ((x * 1e3).round() / 1e3 + 0.0).to_string();
+    format!("{name} {} to {}", number(*low), number(*high))
+}
+
+/// The edges of the box from the least to the greatest X, Y and Z, so that one sees what lies where.
+fn frame([x, y, z]: [&[f64; 2]; 3]) -> Option<Vec<[f64; 2]>> {
+    let mut edges = Vec::new();
+    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        edges.extend([[x[0], y[i], z[j]], [x[1], y[i], z[j]]]);
+        edges.extend([[x[i], y[0], z[j]], [x[i], y[1], z[j]]]);
+        edges.extend([[x[i], y[j], z[0]], [x[i], y[j], z[1]]]);
+    }
+    let known = edges.iter().flatten().all(|x| x.is_finite());
+    let lines = edges.chunks(2).flat_map(|edge| [spatial(edge[0]), spatial(edge[1]), [f64::NAN; 2]]);
+    known.then(|| lines.collect())
+}
+
 /// All figures of a path. `cutter` is the flute's curve where there is one: its path is also shown on the cutter.
 pub fn figures(track: &Track, cutter: Option<&LogCurve>) -> Vec<Figure> {
     let path = samples(track);
@@ -134,6 +186,18 @@ pub fn figures(track: &Track, cutter: Option<&LogCurve>) -> Vec<Figure> {
         }
     }
     let mut figures: Vec<Figure> = views.iter().map(|view| view.figure(track, &path, true)).collect();
+    if let (Some(figure), [x, y, z]) = (figures.iter_mut().find(|figure| figure.id == "spatial"), &linear[..])
+    {
+        let [x, y, z] = [x, y, z].map(|i| (axes.name(*i).to_string(), extent(&path, *i)));
+        figure.series.splice(
+            0..0,
+            frame([&x.1, &y.1, &z.1]).map(|points| Series {
+                name: format!("{}, {}, {}", told(&x), told(&y), told(&z)),
+                style: Style::Thin,
+                points,
+            }),
+        );
+    }
     if let Some(curve) = cutter.copied() {
         let on_cutter = View {
             id: "cutter",
@@ -153,12 +217,21 @@ pub fn figures(track: &Track, cutter: Option<&LogCurve>) -> Vec<Figure> {
                 flutes.push([f64::NAN; MAX_AXES]);
                 continue;
             }
+            // Seen on the cutter A turns too.
+            let turn = (end[3] - start[3]).abs() / DEGREES;
+            let count = ((turn / TURN).ceil() as usize).clamp(PARTS, MOST_POINTS);
             let at =
-                |k: usize| piece.curve.at(piece.from + (piece.to - piece.from) * k as f64 / SAMPLES as f64);
-            flutes.extend((0..=SAMPLES).map(at));
+                |k: usize| piece.curve.at(piece.from + (piece.to - piece.from) * k as f64 / count as f64);
+            flutes.extend((0..=count).map(at));
         }
         if flutes.len() <= 4 * MOST_POINTS {
-            figures.push(on_cutter.figure(track, &flutes, false));
+            let mut figure = on_cutter.figure(track, &flutes, false);
+            let ends = extent(&flutes, 0);
+            let ring = |x: f64| (0..=120).map(move |i| [x, 0.0, 0.0, 3.0 * f64::from(i), 0.0, 0.0]);
+            let rings = ring(ends[0]).map(|p| (on_cutter.of)(&p)).chain([[f64::NAN; 2]]);
+            let points = rings.chain(ring(ends[1]).map(|p| (on_cutter.of)(&p))).collect();
+            figure.series.push(Series { name: "its ends".to_owned(), style: Style::Thin, points });
+            figures.push(figure);
         }
     }
     figures.retain(|figure| !figure.is_empty());

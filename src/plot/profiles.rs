@@ -15,8 +15,22 @@ use crate::units::{Kind, MAX_AXES, Position};
 /// The most cycles that are drawn one by one.
 const MOST: u64 = 4_000;
 
-/// Cycles that turn by more than 30° turn a corner: √¾.
-const CORNER: f64 = 0.866_025_403_784_438_6;
+/// A joint where the velocity steps by more than this share of the feed is a corner: a turn of 3°, or 5 % of F.
+const CORNER: f64 = 0.05;
+
+/// The corners of a track: whether the velocity steps at the start of each piece.
+fn corners(track: &Track) -> Vec<bool> {
+    let velocity = |piece: &Piece<Shape>, u: f64| {
+        let rate = piece.curve.jet(u)[1];
+        let speed = piece.feed / piece.counts.norm(&rate) * (piece.to - piece.from).signum();
+        rate.map(|x| x * speed)
+    };
+    let step = |w: &[Piece<Shape>]| {
+        let (before, after) = (velocity(&w[0], w[0].to), velocity(&w[1], w[1].from));
+        CORNER * w[0].feed.max(w[1].feed) < w[1].counts.norm(&difference(&after, &before))
+    };
+    std::iter::once(false).chain(track.pieces.windows(2).map(step)).collect()
+}
 
 /// A line over the way, or its least and greatest column by column.
 struct Profile {
@@ -82,10 +96,11 @@ struct Collector<'t> {
     feed_error: Profile,
     chord_error: Profile,
     accelerations: Vec<Profile>,
-    /// The last two positions of the run, the later first.
-    last: [Option<Position>; 2],
+    /// The last two positions of the run, the later first, and the piece of each.
+    last: [Option<(Position, usize)>; 2],
     cycle: f64,
-    limited: bool,
+    /// Which pieces start at a corner; without limits speed steps there at no acceleration, which would hide all the rest.
+    corners: Option<Vec<bool>>,
 }
 
 impl Collector<'_> {
@@ -98,7 +113,7 @@ impl Collector<'_> {
                 profile.gap();
             }
             self.accelerations.iter_mut().for_each(Profile::gap);
-            self.last = [Some(row.at), None];
+            self.last = [Some((row.at, row.piece)), None];
             return;
         }
         self.way += row.chord;
@@ -111,18 +126,19 @@ impl Collector<'_> {
         }
         // The rest of a cycle is no whole one.
         if row.time == self.cycle || (row.time - self.cycle).abs() <= 1e-9 * self.cycle {
-            if let [Some(one), Some(two)] = self.last {
-                // Without limits a corner is a step in speed at no acceleration; it would hide all the rest.
-                let (now, before) = (difference(&row.at, &one), difference(&one, &two));
-                let metric = &piece.counts;
-                let along = metric.dot(&now, &before);
-                let corner = !self.limited && along < CORNER * metric.norm(&now) * metric.norm(&before);
+            if let [Some((one, _)), Some((two, first))] = self.last {
+                let joints = first + 1..row.piece + 1;
+                let corner =
+                    self.corners.as_ref().is_some_and(|corners| corners[joints].iter().any(|corner| *corner));
                 for (i, profile) in self.accelerations.iter_mut().enumerate().filter(|_| !corner) {
                     let change = (row.at[i] - one[i]) - (one[i] - two[i]);
+                    // What the roundings of three places can do is no change: half of it in each, twice in the middle.
+                    let noise = 4.0 * f64::EPSILON * row.at[i].abs().max(one[i].abs()).max(two[i].abs());
+                    let change = if change.abs() <= noise { 0.0 } else { change };
                     profile.value(self.way, change / (self.cycle * self.cycle));
                 }
             }
-            self.last = [Some(row.at), self.last[0]];
+            self.last = [Some((row.at, row.piece)), self.last[0]];
         } else {
             self.last = [None, None];
         }
@@ -148,7 +164,7 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
         accelerations: (0..axes.count().min(MAX_AXES)).map(|_| new()).collect(),
         last: [None; 2],
         cycle: options.law.cycle,
-        limited: options.limits.any(),
+        corners: (!options.limits.any()).then(|| corners(track)),
     };
     let summary = simulate(track, options, &mut |row| collector.row(row))?;
     let way = "way in what F counts, mm";
@@ -158,9 +174,12 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
         figure
     };
     let mut figures = vec![single("feed", "Feed", "mm/min", "feed", collector.feed)];
-    let mut linear = Figure::new("acceleration", "Acceleration of the linear axes", [way, "mm/s²"]);
-    let mut rotary =
-        Figure::new("acceleration-rotary", "Acceleration of the rotary axes", [way, "degrees/s²"]);
+    let without = if options.limits.any() { "" } else { ", corners left out" };
+    let titled = |id, kind: &str, unit: &str| {
+        Figure::new(id, format!("Acceleration of the {kind} axes{without}"), [way, unit])
+    };
+    let mut linear = titled("acceleration", "linear", "mm/s²");
+    let mut rotary = titled("acceleration-rotary", "rotary", "degrees/s²");
     for (i, profile) in collector.accelerations.into_iter().enumerate() {
         let figure = match axes.kind(i) {
             Kind::Linear | Kind::Direction => &mut linear,
@@ -169,13 +188,7 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
         figure.add(axes.name(i).to_string(), Style::Line, profile.finish());
     }
     figures.extend([linear, rotary]);
-    figures.push(single(
-        "curvature",
-        "Curvature, rotary axes counted at the surface",
-        "1/mm",
-        "curvature",
-        collector.curvature,
-    ));
+    figures.push(single("curvature", curvature_of(track), "1/mm", "curvature", collector.curvature));
     figures.push(single(
         "feed-error",
         "Feed error: |chord - asked|/asked",
@@ -192,6 +205,19 @@ pub fn figures(track: &Track, options: &Options) -> Result<(Vec<Figure>, Summary
     ));
     figures.retain(|figure| !figure.is_empty());
     Ok((figures, summary))
+}
+
+/// What a curvature is one of.
+fn curvature_of(track: &Track) -> &'static str {
+    let rotary: Vec<usize> =
+        (0..track.axes.count()).filter(|i| track.axes.kind(*i) == Kind::Rotary).collect();
+    if rotary.is_empty() {
+        "Curvature"
+    } else if track.pieces.iter().any(|piece| rotary.iter().any(|i| piece.surface.0[*i] != 0.0)) {
+        "Curvature, rotary axes counted at the surface"
+    } else {
+        "Curvature in the linear axes"
+    }
 }
 
 /// How many cycles there are.

@@ -51,7 +51,7 @@ impl Points {
             if let Curve::Arc(arc) = curve {
                 number += 1;
                 // The bound counts what is across and what is along, some 1.6 times the sagitta.
-                let line = arcs::lines(arc, 0.6 * tolerance);
+                let line = arcs::lines(arc, intent.program.axes.count(), 0.6 * tolerance);
                 points.extend(std::iter::once(line.start).chain(line.points()).map(|p| (number, p)));
                 let turned = arc.sweep().abs() / line.count() as f64;
                 deviation = deviation.max(arcs::sagitta(arc.radius(), turned));

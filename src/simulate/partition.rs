@@ -198,8 +198,8 @@ pub struct Cycles<'p, C> {
     piece: usize,
     u: f64,
     at: Position,
-    /// The last two steps of u on this piece, the later first; zero where there was none.
-    steps: [f64; 2],
+    /// The last three steps of u on this piece, the latest first, at no feed error; zero where there was none.
+    steps: [f64; 3],
 }
 
 impl<'p, C: Parametric> Cycles<'p, C> {
@@ -207,7 +207,7 @@ impl<'p, C: Parametric> Cycles<'p, C> {
     pub fn new(pieces: &'p [Piece<C>], law: Law) -> Cycles<'p, C> {
         let (u, at) =
             pieces.first().map_or((0.0, [0.0; MAX_AXES]), |first| (first.from, first.curve.at(first.from)));
-        Cycles { pieces, law, piece: 0, u, at, steps: [0.0; 2] }
+        Cycles { pieces, law, piece: 0, u, at, steps: [0.0; 3] }
     }
 
     /// Where the next cycle starts.
@@ -215,30 +215,49 @@ impl<'p, C: Parametric> Cycles<'p, C> {
         &self.at
     }
 
-    /// The target on piece `i` from parameter `u`, none where it lies beyond.
-    fn target(&self, i: usize, u: f64, asked: f64) -> Option<f64> {
+    /// The target on piece `i` from parameter `u` and where it is, none where it lies beyond.
+    fn target(&self, i: usize, u: f64, asked: f64) -> Option<(f64, Position)> {
         let piece = &self.pieces[i];
-        let chord = |u: f64| piece.counts.distance(&self.at, &piece.curve.at(u));
-        let begun = if i == self.piece { 0.0 } else { chord(u) };
+        let chord = |at: &Position| piece.counts.distance(&self.at, at);
+        let begun = if i == self.piece { 0.0 } else { chord(&piece.curve.at(u)) };
         let taylor = || u + (asked - begun) / piece.counts.norm(&piece.curve.jet(u)[1]);
         if asked <= begun {
             // The joint itself is as far as asked, or farther by what rounding makes.
-            return Some(u);
+            return Some((u, piece.curve.at(u)));
         }
+        if self.law.method == Method::Taylor {
+            return Some(taylor()).filter(|next| *next < piece.to).map(|next| (next, piece.curve.at(next)));
+        }
+        let guess = if i == self.piece { self.expected().map(|step| u + step) } else { None };
+        // Where the curve was looked at last; that is the target when one is found.
+        let mut seen = (u, self.at);
+        let excess = |u: f64| {
+            seen = (u, piece.curve.at(u));
+            chord(&seen.1) - asked
+        };
         let enough = self.law.tolerance * asked;
-        match self.law.method {
-            Method::Taylor => Some(taylor()).filter(|next| *next < piece.to),
-            Method::Bisection | Method::Secant => {
-                let guess = match self.steps {
-                    [last, before] if i == self.piece && 0.0 < last => {
-                        u + if before == 0.0 { last } else { (2.0 * last - before).max(0.5 * last) }
-                    }
-                    _ => taylor(),
-                };
-                let value = begun - asked;
-                root(|u| chord(u) - asked, (u, value), piece.to, guess, enough, self.law.method)
+        let guess = guess.unwrap_or_else(taylor);
+        let next = root(excess, (u, begun - asked), piece.to, guess, enough, self.law.method)?;
+        // Where the end is the target as well, nothing is left behind it.
+        if next < piece.to && piece.to - next <= 2.0 * self.law.tolerance * (next - u) {
+            let end = piece.curve.at(piece.to);
+            if (chord(&end) - asked).abs() <= enough {
+                return Some((piece.to, end));
             }
         }
+        Some(if seen.0 == next { seen } else { (next, piece.curve.at(next)) })
+    }
+
+    /// The next step of u: the steps before, continued by a parabola, or by what there is of them; none on the first cycle.
+    fn expected(&self) -> Option<f64> {
+        let [one, two, three] = self.steps;
+        let step = match self.steps {
+            [0.0, ..] => return None,
+            [_, 0.0, _] => one,
+            [_, _, 0.0] => 2.0 * one - two,
+            _ => 3.0 * (one - two) + three,
+        };
+        (0.0 < one).then_some(step.max(0.5 * one))
     }
 }
 
@@ -284,8 +303,7 @@ impl<C: Parametric> Iterator for Cycles<'_, C> {
             }
         };
         let piece = &self.pieces[i];
-        let u = next.unwrap_or(piece.to);
-        let at = piece.curve.at(u);
+        let (u, at) = next.unwrap_or_else(|| (piece.to, piece.curve.at(piece.to)));
         let chord = piece.counts.distance(&self.at, &at);
         let chord_error = chord_error(self.pieces, (self.piece, self.u, &self.at), (i, u, &at));
         // The last cycle is as short as what is left.
@@ -294,10 +312,11 @@ impl<C: Parametric> Iterator for Cycles<'_, C> {
             None => (chord / current.feed, chord),
         };
         let feed_error = if wanted == 0.0 { 0.0 } else { (chord - wanted) / wanted };
-        if i == self.piece {
-            self.steps = [u - self.u, self.steps[0]];
+        if i == self.piece && 0.0 < chord {
+            // As long as they would be at no feed error, so that errors of one cycle do not grow from guess to guess.
+            self.steps = [(u - self.u) * (wanted / chord), self.steps[0], self.steps[1]];
         } else {
-            self.steps = [0.0; 2];
+            self.steps = [0.0; 3];
         }
         (self.piece, self.u, self.at) = (i, u, at);
         if next.is_none() || (i + 1 == self.pieces.len() && piece.to <= u) {

@@ -78,7 +78,7 @@ pub struct Stretch {
     pub needed: f64,
     /// How far they go, in what F counts.
     pub length: f64,
-    /// As how many cubic blocks their points would do, within the tolerance.
+    /// As how many cubic blocks `--fit` would write their points, within the tolerance; none where that is no fewer.
     pub splines: Option<usize>,
 }
 
@@ -134,6 +134,16 @@ impl Summary {
                     .to_owned(),
             );
         }
+        let mixed = |piece: &super::Piece<super::Shape>| {
+            let counted = |kind: Kind| {
+                let of_kind = |i: &usize| track.axes.kind(*i) == kind && piece.counts.0[*i] != 0.0;
+                (0..track.axes.count()).any(|i| of_kind(&i))
+            };
+            counted(Kind::Linear) && counted(Kind::Rotary)
+        };
+        if track.pieces.iter().any(mixed) {
+            notes.push("the length and the feed count rotary axes too, as F does".to_owned());
+        }
         Summary {
             cycles: 0,
             length: 0.0,
@@ -183,7 +193,7 @@ impl Summary {
                 Kind::Direction => continue,
             };
             let told =
-                |worst: &Worst, per: &str| worst.told(&format!("{:.4} {unit}/{per}", worst.value + 0.0));
+                |worst: &Worst, per: &str| worst.told(&format!("{} {unit}/{per}", figure(worst.value)));
             let _ = writeln!(text, "  {:<4} speed    {}", figures.axis, told(&figures.speed, "min"));
             let _ = writeln!(text, "       accel.   {}", told(&figures.acceleration, "s2"));
             if figures.step.value != 0.0 {
@@ -202,6 +212,11 @@ impl Summary {
     pub fn to_json(&self) -> String {
         serde_json::to_string(&serde_json::json!({ "simulation": self })).unwrap_or_default() + "\n"
     }
+}
+
+/// A value with three decimals, a small one with three figures.
+fn figure(x: f64) -> String {
+    if x == 0.0 || 0.1 <= x { format!("{:.3}", x + 0.0) } else { format!("{x:.2e}") }
 }
 
 impl Blocks {
@@ -238,14 +253,14 @@ impl Blocks {
                 let each = stretch.time / splines as f64 * 1e3;
                 let enough = if block_time <= each { "at full feed" } else { "still too short" };
                 let blocks = if splines == 1 { "block" } else { "blocks" };
+                let does = if splines == 1 { "does" } else { "do" };
                 let _ = writeln!(
                     text,
-                    "                as splines some {splines} cubic {blocks} of {each:.1} ms would do: {enough}"
+                    "                as splines (--fit, or a flute's own --motion) {splines} cubic {blocks} of {each:.1} ms {does}: {enough}"
                 );
             }
             None => {
-                let _ =
-                    writeln!(text, "                they are no lines: splines would not make them fewer");
+                let _ = writeln!(text, "                splines would not make them fewer");
             }
         }
     }

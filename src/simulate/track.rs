@@ -133,7 +133,11 @@ impl Track {
             builder.place = Place { span: located.span, line: 0 };
             match &located.step {
                 Step::Cut(Cut { feed, curve, .. }) => {
-                    builder.feed(feed.map(Decimal::to_f64))?;
+                    let timed = matches!(curve, Written::Lines(points) if !points.rates.is_empty());
+                    // Under inverse time every line has its own F.
+                    if feed.is_some() || setting.feed.is_some() || !timed {
+                        builder.feed(feed.map(Decimal::to_f64))?;
+                    }
                     builder.written(decimals, curve)?;
                 }
                 Step::Rapid(targets) => builder.rapid(targets.iter().map(|(axis, to)| (*axis, to.to_f64()))),

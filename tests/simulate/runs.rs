@@ -207,7 +207,9 @@ fn a_starved_control_is_told_with_a_way_out() {
     let text = std::fs::read_to_string(program).expect("the program");
     let plunge = 1 + text.lines().position(|line| line.contains(" G1 Z0")).expect("a plunge");
     let lines = format!("lines {} to {}", plunge + 1, plunge + 16);
-    for words in ["control's 6 ms a block", &lines, "of the feed", "cubic blocks", "at full feed"] {
+    for words in
+        ["control's 6 ms a block", &lines, "of the feed", "--fit", "1 cubic block of", "at full feed"]
+    {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }
 }
@@ -289,4 +291,26 @@ fn a_program_that_carries_the_remarks_of_its_cl_data_is_run_as_a_program() {
         // Its A is never moved, so that nothing depends on where it stands.
         assert!(!told.contains("start-unknown"), "{told}");
     }
+}
+
+#[test]
+fn every_golden_program_is_run_as_it_stands() {
+    let mut run = 0;
+    for case in std::fs::read_dir(folder("fixtures/compile")).expect("fixtures/compile").flatten() {
+        for file in std::fs::read_dir(case.path()).expect("a case").flatten() {
+            let path = file.path();
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            if path.extension().is_some_and(|extension| extension == "toml") {
+                continue;
+            }
+            let own = path.with_file_name(format!("{name}.machine.toml"));
+            let machine = if own.exists() { own.display().to_string() } else { name };
+            let program = path.display().to_string();
+            let output = splinepost(&["simulate", &program, "--to", &machine, "--cycle", "10ms"]);
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(0), "{program}: {told}");
+            run += 1;
+        }
+    }
+    assert!(0 < run, "there is no program");
 }

@@ -60,7 +60,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Motion, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Granted, Motion, Parameter, Round};
 use crate::geom::arc::Plane;
 
 /// The dialect.
@@ -79,6 +79,10 @@ pub const DIALECT: Dialect = Dialect {
     nurbs: None,
     naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
+    granted: &[
+        Granted { what: "coordinates are in mm", right: &["MM"], wrong: &["INCH"] },
+        Granted { what: "F is per minute", right: &["M137"], wrong: &["M136"] },
+    ],
     inverse_time: false,
     round: Round::Step,
     // C and CP lie in the working plane, square to the tool.

@@ -57,7 +57,7 @@
 mod read;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -85,6 +85,12 @@ pub const MAZAK: Dialect = Dialect {
     nurbs: Some(NurbsRules { degrees: (1, 3), greatest_weight: 99.9999, starts_with_one: false }),
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
     parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
+    granted: &[
+        Granted { what: "coordinates are absolute", right: &["G90"], wrong: &["G91"] },
+        Granted { what: "coordinates are in mm", right: &["G21"], wrong: &["G20"] },
+        Granted { what: "F is per minute", right: &["G94"], wrong: &["G93", "G95"] },
+        Granted { what: "the plane is XY", right: &["G17"], wrong: &["G18", "G19"] },
+    ],
     inverse_time: true,
     round: Round::Place,
     // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.

@@ -61,7 +61,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 
@@ -103,6 +103,12 @@ pub const DIALECT: Dialect = Dialect {
         is_name,
     ),
     parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
+    granted: &[
+        Granted { what: "coordinates are absolute", right: &["G90"], wrong: &["G91"] },
+        Granted { what: "coordinates are in mm", right: &["G71", "G710"], wrong: &["G70", "G700"] },
+        Granted { what: "F is per minute", right: &["G94"], wrong: &["G93", "G95", "G96", "G97"] },
+        Granted { what: "the plane is XY", right: &["G17"], wrong: &["G18", "G19"] },
+    ],
     inverse_time: false,
     round: Round::Shortest,
     // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs

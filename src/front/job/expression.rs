@@ -131,6 +131,10 @@ impl Reader<'_> {
 
     fn end_of_u(&mut self, end: &Spanned<Bound>, constants: &[(String, f64)]) -> Option<f64> {
         let expression = match end.get_ref() {
+            Bound::Number(x) if !x.is_finite() => {
+                self.error("not-finite", "an end of u must be a finite number", end.span());
+                return None;
+            }
             Bound::Number(x) => Expression::number(*x),
             Bound::Text(text) => match parse(text, constants) {
                 Ok(expression) => expression,
@@ -142,11 +146,11 @@ impl Reader<'_> {
             },
         };
         match expression.at(0.0) {
-            Ok(x) if x.is_finite() && !expression.depends() => return Some(x),
             Ok(_) if expression.depends() => {
                 self.error("u-range", "an end of u cannot depend on u", end.span());
             }
-            Ok(_) => self.error("not-finite", "an end of u must be a finite number", end.span()),
+            // What an expression gives is finite.
+            Ok(x) => return Some(x),
             Err(failing) => self.error("expression-domain", failing.fault.to_string(), end.span()),
         }
         None

@@ -58,11 +58,14 @@ impl std::fmt::Display for FormulaError {
     }
 }
 
-/// A parameter in six decimals: it is known to a billionth of the range.
+/// A parameter in seven figures.
 fn place(u: f64) -> String {
-    let text = format!("{u:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    let seven: f64 = format!("{u:.6e}").parse().unwrap_or(u);
+    if seven == 0.0 || (1e-4..1e9).contains(&seven.abs()) {
+        (seven + 0.0).to_string()
+    } else {
+        format!("{seven:e}")
+    }
 }
 
 impl Formula {
@@ -143,7 +146,10 @@ impl Formula {
             }
             // A fault that the place itself has is told before one that only its surroundings may have.
             let u = [low, high, middle].into_iter().find(|u| self.fault_at(*u).is_some()).unwrap_or(middle);
-            return Err(match (self.fault_at(u), found) {
+            let fault = self.fault_at(u);
+            // Nearer to zero than a part is wide, it is zero.
+            let u = if u.abs() <= PLACE * width { 0.0 } else { u };
+            return Err(match (fault, found) {
                 (Some((axis, failing)), _) | (None, Err((axis, failing))) => {
                     FormulaError::Fails { axis, failing, u }
                 }

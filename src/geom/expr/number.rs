@@ -19,7 +19,7 @@ pub enum Fault {
     #[error("this is the logarithm of a number that is not positive")]
     LogarithmOfNonPositive,
     /// xʳ or x^f, x ≤ 0.
-    #[error("this is a broken power of a number that is not positive")]
+    #[error("this is a fractional power of a number that is not positive")]
     PowerOfNonPositive,
     /// tan x at π/2 + kπ.
     #[error("the tangent has a pole here")]

@@ -164,6 +164,15 @@ fn faults_are_found_with_place_and_parameter() {
 }
 
 #[test]
+fn parameters_are_told_in_seven_figures() {
+    let told = |u: f64| FormulaError::Stands { u }.to_string();
+    assert_eq!(told(1.0 / 3.0), "the curve stands still at u = 0.3333333");
+    assert_eq!(told(-0.0), "the curve stands still at u = 0");
+    assert_eq!(told(2.5e-7), "the curve stands still at u = 2.5e-7");
+    assert_eq!(told(9.313_225_746e290), "the curve stands still at u = 9.313226e290");
+}
+
+#[test]
 fn a_curve_that_stands_still_is_none() {
     // The cusp of an involute, of a cycloid.
     let stands = |x: &str, y: &str, from: f64, to: f64| match curve(x, y, from, to) {

@@ -11,24 +11,30 @@ use crate::machine::{
     AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, Spline, Text,
     Turn,
 };
+use crate::source::Span;
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
 use toml::Spanned;
+
+/// Controls take block numbers of up to eight figures.
+const GREATEST_NUMBER: u32 = 99_999_999;
 
 impl Reader {
     /// What the file says of each axis, over what the machine below it says.
     pub(super) fn limits(
         &mut self,
-        file: BTreeMap<String, AxisFile>,
+        file: BTreeMap<Spanned<String>, AxisFile>,
         axes: Option<&Axes>,
         base: Option<&Machine>,
     ) -> BTreeMap<Axis, AxisLimits> {
         let mut all = base.map(|b| b.limits.clone()).unwrap_or_default();
         for (name, own) in file {
-            let axis = Axis::new(&name).filter(|axis| axes.is_none_or(|axes| axes.index_of(*axis).is_some()));
+            let axis = Axis::new(name.get_ref())
+                .filter(|axis| axes.is_none_or(|axes| axes.index_of(*axis).is_some()));
             let Some(axis) = axis else {
-                let message = format!("[axis.{name}] speaks of an axis that the machine does not have");
-                self.diagnostics.push(Diagnostic::error("axis-unknown", message));
+                let message =
+                    format!("[axis.{}] speaks of an axis that the machine does not have", name.get_ref());
+                self.error("axis-unknown", message, name.span());
                 continue;
             };
             let limits = all.entry(axis).or_default();
@@ -231,14 +237,39 @@ impl Reader {
         })
     }
 
+    /// Lines round a program may not leave it in a mode that it does not expect: `G91 G28 Z0.` needs a `G90` behind it.
+    fn say_what_is_granted(&mut self, lines: &[Spanned<String>], dialect: &Dialect) {
+        for granted in dialect.granted {
+            let mut last = None;
+            for line in lines {
+                for word in words(line.get_ref()) {
+                    if granted.wrong.contains(&word.as_str()) {
+                        last = Some((word, line.span()));
+                    } else if granted.right.contains(&word.as_str()) {
+                        last = None;
+                    }
+                }
+            }
+            if let Some((word, span)) = last {
+                let message =
+                    format!("behind `{word}` a program would not do what it says: {}", granted.what);
+                let hint = format!("put {} behind it, or leave it out", granted.right.join(" or "));
+                let span = Span::new(self.source, span);
+                self.diagnostics.push(Diagnostic::error("mode-not-granted", message).at(span, "").hint(hint));
+            }
+        }
+    }
+
     fn lines(
         &mut self,
         own: Option<Vec<Spanned<String>>>,
         base: Option<&Vec<Template>>,
         key: &str,
         variables: &[&str],
+        dialect: &Dialect,
     ) -> Option<Vec<Template>> {
         let Some(own) = own else { return self.or(None, base.cloned(), &format!("program.{key}")) };
+        self.say_what_is_granted(&own, dialect);
         let mut lines = Vec::new();
         for line in own {
             let template = Template(line.get_ref().clone());
@@ -281,8 +312,12 @@ impl Reader {
             sign_always: self.or(file.sign_always, base.map(|b| b.sign_always), "text.sign_always")?,
             leading_zero: self.or(file.leading_zero, base.map(|b| b.leading_zero), "text.leading_zero")?,
             spaces: self.or(file.spaces, base.map(|b| b.spaces), "text.spaces")?,
-            number_start: self.or(file.number_start, base.map(|b| b.number_start), "text.number_start")?,
-            number_step: self.or(file.number_step, base.map(|b| b.number_step), "text.number_step")?,
+            number_start: self.block_number(
+                file.number_start,
+                base.map(|b| b.number_start),
+                "number_start",
+            )?,
+            number_step: self.block_number(file.number_step, base.map(|b| b.number_step), "number_step")?,
             number_comments: self.or(
                 file.number_comments,
                 base.map(|b| b.number_comments),
@@ -292,6 +327,14 @@ impl Reader {
             comment_length: self.or(length, base.map(|b| b.comment_length), "text.comment_length")?,
             extension: self.or(file.extension, base.map(|b| b.extension.clone()), "text.extension")?,
         })
+    }
+
+    /// A block number, or a step between two.
+    fn block_number(&mut self, own: Option<Spanned<u32>>, base: Option<u32>, key: &str) -> Option<u32> {
+        if let Some(number) = own.as_ref().filter(|number| GREATEST_NUMBER < *number.get_ref()) {
+            self.error("block-number-range", format!("{key} is at most {GREATEST_NUMBER}"), number.span());
+        }
+        self.or(own.map(Spanned::into_inner), base, &format!("text.{key}"))
     }
 
     pub(super) fn parameters(
@@ -309,9 +352,14 @@ impl Reader {
         Some(Parameters { first, last })
     }
 
-    pub(super) fn frame(&mut self, file: ProgramFile, base: Option<&Frame>) -> Option<Frame> {
+    pub(super) fn frame(
+        &mut self,
+        file: ProgramFile,
+        base: Option<&Frame>,
+        dialect: &Dialect,
+    ) -> Option<Frame> {
         let lines = |this: &mut Self, own, of: fn(&Frame) -> &Vec<Template>, key, variables: &[&str]| {
-            this.lines(own, base.map(of), key, variables)
+            this.lines(own, base.map(of), key, variables, dialect)
         };
         Some(Frame {
             header: lines(self, file.header, |b| &b.header, "header", &["name", "number", "linear"])?,
@@ -343,17 +391,47 @@ impl Reader {
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
             footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
             subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,
-            call: self.line(file.call, base.map(|b| &b.call), "call")?,
-            begin: self.line(file.begin, base.map(|b| &b.begin), "begin")?,
-            end: self.line(file.end, base.map(|b| &b.end), "end")?,
+            call: self.line(file.call, base.map(|b| &b.call), "call", dialect)?,
+            begin: self.line(file.begin, base.map(|b| &b.begin), "begin", dialect)?,
+            end: self.line(file.end, base.map(|b| &b.end), "end", dialect)?,
             close: lines(self, file.close, |b| &b.close, "close", &["name"])?,
         })
     }
 
     /// A line of subprograms.
-    fn line(&mut self, own: Option<Spanned<String>>, base: Option<&Template>, key: &str) -> Option<Template> {
-        let lines =
-            self.lines(own.map(|line| vec![line]), base.cloned().map(|b| vec![b]).as_ref(), key, &["label"])?;
+    fn line(
+        &mut self,
+        own: Option<Spanned<String>>,
+        base: Option<&Template>,
+        key: &str,
+        dialect: &Dialect,
+    ) -> Option<Template> {
+        let (own, base) = (own.map(|line| vec![line]), base.cloned().map(|b| vec![b]));
+        let lines = self.lines(own, base.as_ref(), key, &["label"], dialect)?;
         lines.into_iter().next()
     }
+}
+
+/// The words of a line without its comments: `G17G21 (XY, MM)` is G17 and G21.
+fn words(line: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let (mut brackets, mut before) = (0usize, ' ');
+    for c in line.chars().take_while(|c| *c != ';') {
+        match c {
+            '(' | '{' => brackets += 1,
+            ')' | '}' => brackets = brackets.saturating_sub(1),
+            _ if 0 < brackets => {}
+            ' ' => words.push(String::new()),
+            _ => {
+                if before.is_ascii_digit() && c.is_ascii_alphabetic() {
+                    words.push(String::new());
+                }
+                if let Some(word) = words.last_mut() {
+                    word.push(c.to_ascii_uppercase());
+                }
+            }
+        }
+        before = c;
+    }
+    words
 }
