@@ -40,7 +40,7 @@ use crate::machine::Machine;
 use crate::pass::stretch::of_curve;
 use crate::setup::Setup;
 use crate::source::{SourceId, Span};
-use crate::units::{DEGREES, MAX_AXES, Position};
+use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 
 pub use form::same_form;
 
@@ -212,27 +212,8 @@ pub fn verify(
                 if cursor.gap != 0.0 {
                     cursor.gap += gap;
                 }
-                if !(found.deviation.mm <= tolerance) {
-                    let message = format!(
-                        "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
-                        found.deviation.mm
-                    );
-                    let diagnostic = Diagnostic::refusal("deviation-too-large", message);
+                if let Some(diagnostic) = too_far(found.deviation, tolerance, machine, &intent.program.axes) {
                     // Looked up only now: finding a line reads the text.
-                    (cursor.at, cursor.within) = (at, within);
-                    return Err(match cursor.step() {
-                        Some(step) => diagnostic.at(cursor.place(step), "").into(),
-                        None => diagnostic.into(),
-                    });
-                }
-                let angle = found.deviation.rad * DEGREES;
-                let allowed = machine.orientation.tolerance;
-                if intent.program.axes.direction().is_some() && !(angle <= allowed) {
-                    let message = format!(
-                        "the tool is turned by up to {angle:.4} degrees from where it should be, more than the {allowed} of \
-                         the machine file"
-                    );
-                    let diagnostic = Diagnostic::refusal("direction-too-far", message);
                     (cursor.at, cursor.within) = (at, within);
                     return Err(match cursor.step() {
                         Some(step) => diagnostic.at(cursor.place(step), "").into(),
@@ -274,6 +255,25 @@ pub fn verify(
         return Err(Diagnostic::refusal("setup-differs", message).at(place, "").into());
     }
     Ok(report)
+}
+
+/// What is said of a path that is too far from what was asked, in places or in the tool's direction.
+fn too_far(deviation: Bound, tolerance: f64, machine: &Machine, axes: &Axes) -> Option<Diagnostic> {
+    if !(deviation.mm <= tolerance) {
+        let message = format!(
+            "the program deviates by up to {:.3e} mm, more than the tolerance of {tolerance} mm",
+            deviation.mm
+        );
+        return Some(Diagnostic::refusal("deviation-too-large", message));
+    }
+    let (angle, allowed) = (deviation.rad * DEGREES, machine.orientation.tolerance);
+    (axes.direction().is_some() && !(angle <= allowed)).then(|| {
+        let message = format!(
+            "the tool is turned by up to {angle:.4} degrees from where it should be, more than {allowed}"
+        );
+        Diagnostic::refusal("direction-too-far", message)
+            .hint("[orientation] tolerance of the machine file says how far it may be")
+    })
 }
 
 /// Where in the program the comparison stands: a step, and in a run of lines the points already met.

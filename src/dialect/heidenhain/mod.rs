@@ -46,11 +46,15 @@
 //!
 //! A K has nine digits, one of them before the point; from ten on it needs an exponent.
 //!
+//! **Five axes.** Under M128 the tip is led, and `LN X… Y… Z… TX… TY… TZ…` states the direction of the tool towards the spindle,
+//! of length 1. What SPL does under M128 no page says, so that splines that turn the tool become LN blocks.
+//!
 //! # Modal words
 //!
 //! | word | modal |
 //! |---|---|
-//! | L, SPL | never: every block says what it is |
+//! | L, LN, SPL | never: every block says what it is |
+//! | TX TY TZ | never: all three stand in every LN block |
 //! | X Y Z A | a coordinate left out stays |
 //! | F, R0 | yes |
 //! | FMAX | never: the F before it holds again in the next block |

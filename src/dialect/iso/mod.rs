@@ -44,6 +44,9 @@
 //! hold points alone. Its shape is the control's. The same word is another thing on a Fanuc 15i, where the first block
 //! holds a tangent.
 //!
+//! **Five axes.** Behind G43.5 the tip is led, and I J K of a rapid or a straight move are no centre but the direction of the
+//! tool towards the spindle. All three stand in every block.
+//!
 //! # Modal words
 //!
 //! | word | modal |
@@ -52,7 +55,7 @@
 //! | X Y Z A | a word left out stays; within G06.2 every moving axis stands on every block |
 //! | F | yes |
 //! | P | of its curve |
-//! | K, R | never |
+//! | K, R; I J K of arcs and of the tool's direction | never |
 
 mod read;
 mod write;

@@ -48,6 +48,24 @@
 //! makes them follow the *parameter*. So `UPATH` stands before each run of POLY or spline blocks that moves one, and
 //! `SPLINEPATH(1,…)` names every axis of a spline run.
 //!
+//! **Five axes.** One might expect the direction of the tool to be given as angles. TRAORI leads the tip, and `A3= B3= C3=`
+//! are a vector towards the spindle whose length means nothing; components that are left out count as zero, so that all
+//! three stand in every block. Under ORICURVE the direction is that from the tip to a second point `XH= YH= ZH=`, which runs
+//! on a curve of its own with the knots and weights of the tip's: with D = H − P, both are one curve in six coordinates, and
+//!
+//! ```text
+//! H_i = P_i + D_i                 BSPLINE: control points
+//! PO[XH]=(P + D, a₂ + a₂′, …)     POLY: ends and coefficients
+//! ```
+//!
+//! A second curve starts where the last block left H, so that a straight block that moves nothing states it first:
+//!
+//! ```text
+//! N10 ORICURVE
+//! N20 G1 X0 Y0 Z0 XH=0 YH=0 ZH=100 F800
+//! N30 BSPLINE SD=3 X10 Y0 Z0 XH=10 YH=3 ZH=100 PL=0
+//! ```
+//!
 //! # Modal words
 //!
 //! | word | modal |
@@ -55,7 +73,8 @@
 //! | G0 G1 POLY BSPLINE ASPLINE CSPLINE | yes, one group |
 //! | X Y Z A | a word left out stays |
 //! | F, SD, UPATH, SPLINEPATH | yes |
-//! | PL, PW, PO[…] | never |
+//! | ORIVECT ORIAXES ORICURVE | yes, one group |
+//! | PL, PW, PO[…], A3 B3 C3, XH YH ZH | never |
 
 mod read;
 mod words;
