@@ -39,6 +39,9 @@ pub(crate) struct Compile {
     /// Make splines of runs of short lines, within the tolerance of them and with their corners
     #[arg(long)]
     fit: bool,
+    /// With --fit: a turn by more degrees than this is a corner, and kept [default: 25]
+    #[arg(long, value_name = "DEGREES", requires = "fit", value_parser = corner)]
+    corner: Option<f64>,
     /// Write the program without its proof, and say so in it
     #[arg(long)]
     no_verify: bool,
@@ -63,6 +66,7 @@ impl Compile {
             tolerance: self.tolerance,
             no_verify: self.no_verify,
             fit: self.fit,
+            corner: self.corner,
         };
         // `--motion auto` overrules the machine's own choice.
         let mut machine = machine;
@@ -94,6 +98,14 @@ impl Compile {
             output.setup,
         ));
         Ok(())
+    }
+}
+
+/// The angle of a corner must be one.
+fn corner(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if 0.0 < x && x < 180.0 => Ok(x),
+        _ => Err("an angle above 0 and below 180 degrees is needed".to_owned()),
     }
 }
 

@@ -43,11 +43,9 @@ impl Verify {
         let machine = machine(&self.to, sources)?;
         let language = language(self.from.as_deref(), sources)?;
         let options = Options {
-            motion: None,
             method: self.method.map(Into::into),
             tolerance: self.tolerance,
-            no_verify: false,
-            fit: false,
+            ..Options::default()
         };
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);

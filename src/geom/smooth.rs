@@ -1,8 +1,8 @@
 //! Runs of many points become C2 cubic B-splines, corners kept.
 //!
-//! 1. **Corners.** The run is simplified within the tolerance (Douglas and Peucker); where the simplified path turns by
-//!    more than `CORNER` degrees, both of its segments being longer than the tolerance reaches, is a corner. Noise turns the
-//!    points of a run, but not its simplified path.
+//! 1. **Corners.** The run is simplified within the tolerance (Douglas and Peucker). A corner is where the simplified path turns
+//!    by more than the corner's angle, and the run too, seen from a few tolerances on either side: noise turns the points of
+//!    a run but not its simplified path, and an arc turns that but not what is seen from near.
 //! 2. **A spline from corner to corner**, by least squares on the chord lengths, its ends exact. It begins with one span; every
 //!    span that is too far from a point is halved, until all hold. A long line among short ones gets points of its own, so
 //!    that the spline has no room to swing beside it.
@@ -16,10 +16,21 @@ use super::elementary::cos;
 use super::nurbs::Nurbs;
 use crate::units::{MAX_AXES, Position};
 
-/// A turn above this is a corner, degrees.
-const CORNER: f64 = 25.0;
+/// How runs of points become splines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitting {
+    /// How far a point may be from the spline, mm.
+    pub tolerance: f64,
+    /// A turn above this is a corner, degrees.
+    pub corner: f64,
+}
 
-/// A segment of the simplified path that is shorter than this many tolerances makes no corner.
+/// A turn above this is a corner, degrees, where nobody says otherwise. Seen from [`REACH`] tolerances on either side an arc
+/// of radius R turns by REACH δ/R, so that arcs of more than 18 tolerances are no corners.
+pub const CORNER: f64 = 25.0;
+
+/// So many tolerances on either side of a corner the path is straight, or nearly. Noise of half the tolerance turns what is
+/// seen from there by at most 2 · 2/16 = ¼ radian, and mostly by far less.
 const REACH: f64 = 8.0;
 
 /// A span is not halved below so many points.
@@ -38,12 +49,13 @@ fn distance(a: &Position, b: &Position) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
-/// A B-spline through the first and the last point and within `tolerance` mm of all; none where it would save nothing.
-pub fn spline(points: &[Position], tolerance: f64) -> Option<Nurbs> {
+/// A B-spline through the first and the last point and within the tolerance of all; none where it would save nothing.
+pub fn spline(points: &[Position], fitting: Fitting) -> Option<Nurbs> {
+    let Fitting { tolerance, corner } = fitting;
     if points.len() < LEAST + 1 {
         return None;
     }
-    let corners = corners(points, tolerance);
+    let corners = corners(points, tolerance, corner);
     let (mut pieces, mut knots, mut control) = (0, Vec::new(), Vec::new());
     let mut t = 0.0;
     for pair in corners.windows(2) {
@@ -97,9 +109,9 @@ fn lines(run: &[Position]) -> Run {
 }
 
 /// Where a run has corners, its first and last point included.
-fn corners(points: &[Position], tolerance: f64) -> Vec<usize> {
+fn corners(points: &[Position], tolerance: f64, corner: f64) -> Vec<usize> {
     let kept = simplified(points, tolerance);
-    let least = cos(CORNER / crate::units::DEGREES);
+    let least = cos(corner / crate::units::DEGREES);
     let mut corners = vec![0];
     for triple in kept.windows(3) {
         let [a, b, c] = [0, 1, 2].map(|k| points[triple[k]]);
@@ -107,13 +119,24 @@ fn corners(points: &[Position], tolerance: f64) -> Vec<usize> {
         if before.min(after) < REACH * tolerance {
             continue;
         }
-        let turn: f64 = (0..MAX_AXES).map(|i| (b[i] - a[i]) * (c[i] - b[i])).sum::<f64>() / (before * after);
-        if turn < least {
+        let reach = REACH * tolerance;
+        let away = |i: &usize| reach <= distance(&points[*i], &b);
+        let near = [
+            (triple[0]..triple[1]).rev().find(away).unwrap_or(triple[0]),
+            (triple[1] + 1..triple[2]).find(away).unwrap_or(triple[2]),
+        ];
+        if cosine(&a, &b, &c) < least && cosine(&points[near[0]], &b, &points[near[1]]) < least {
             corners.push(triple[1]);
         }
     }
     corners.push(points.len() - 1);
     corners
+}
+
+/// The cosine of the turn at b on the way from a to c.
+fn cosine(a: &Position, b: &Position, c: &Position) -> f64 {
+    let turn: f64 = (0..MAX_AXES).map(|i| (b[i] - a[i]) * (c[i] - b[i])).sum();
+    turn / (distance(a, b) * distance(b, c))
 }
 
 /// The points that are kept when those within `tolerance` of the lines between kept ones are left out.
@@ -366,6 +389,10 @@ mod tests {
     use super::*;
     use crate::geom::elementary::sin;
 
+    fn within(tolerance: f64) -> Fitting {
+        Fitting { tolerance, corner: CORNER }
+    }
+
     fn wave(spacing: f64, noise: f64) -> Vec<Position> {
         let mut seed = 1u64;
         let mut random = || {
@@ -385,7 +412,7 @@ mod tests {
         // Both coordinates are off by at most a third of the tolerance, together by less than half of it.
         for (spacing, noise) in [(0.01, 0.0), (0.1, 0.0), (0.01, 0.0035), (0.1, 0.0035)] {
             let points = wave(spacing, noise);
-            let fitted = spline(&points, 0.01).unwrap();
+            let fitted = spline(&points, within(0.01)).unwrap();
             assert!(
                 10 * (fitted.points().len() - 1) < points.len(),
                 "{} of {}",
@@ -414,7 +441,7 @@ mod tests {
                 std::array::from_fn::<f64, MAX_AXES, _>(|axis| a[axis] + share * (b[axis] - a[axis]))
             }));
         }
-        let fitted = spline(&points, 0.005).unwrap();
+        let fitted = spline(&points, within(0.005)).unwrap();
         for k in 0..=6 {
             let kept = fitted.points().iter().any(|p| distance(p, &corner(k)) < 1.0e-12);
             assert!(kept, "corner {k} is gone");
@@ -424,6 +451,6 @@ mod tests {
 
     #[test]
     fn few_points_stay_lines() {
-        assert!(spline(&wave(0.1, 0.0)[..4], 0.01).is_none());
+        assert!(spline(&wave(0.1, 0.0)[..4], within(0.01)).is_none());
     }
 }

@@ -4,6 +4,7 @@
 //! other. Curves that meet may stand in one run of blocks: where one of them ends is where a block ends at its end,
 //! rounded, about as far along as the curve is long.
 
+use super::splined::Run;
 use super::{Cursor, Found, Status, to_nurbs};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -13,6 +14,7 @@ use crate::geom::deviation::{Bound, Metric};
 use crate::geom::direction;
 use crate::geom::follow::follow_turning;
 use crate::geom::nurbs::Nurbs;
+use crate::geom::runs;
 use crate::ir::{Curve, Polyline, Units, Written, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::approximate::{Frame, approximate};
@@ -143,6 +145,18 @@ impl Cursor<'_> {
         let rad = rotary.fold(0.0, |most, (axis, _)| f64::max(most, turn(axis)));
         found.deviation = Bound { mm: followed.distance, rad };
         found.path_blocks = blocks;
+        // Straight blocks, one a line, are no spline.
+        if let Curve::Lines(line) = asked.curve
+            && !matches!(written, Written::Lines(_))
+            && path.len() < line.count()
+        {
+            let ends = scaled(&pieces);
+            let points: Vec<Position> =
+                ends.first().map(Bezier::start).into_iter().chain(ends.iter().map(Bezier::end)).collect();
+            let likeness = runs::compare(&points, &scaled(&path));
+            found.splined =
+                Some(Run { lines: line.count(), blocks, from_lines: followed.distance, likeness });
+        }
         found.minutes = minutes(&path, asked, &self.decimals.program.axes);
         self.map = self.map.max(Some(followed.map));
         self.pass(written, blocks);

@@ -5,6 +5,7 @@
 mod stages;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use splinepost::geom::smooth::{CORNER, Fitting, spline};
 use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
 use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
@@ -181,7 +182,7 @@ fn fit(c: &mut Criterion) {
             .collect();
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(count.to_string(), |b| {
-            b.iter(|| splinepost::geom::smooth::spline(black_box(&points), 0.01).is_some());
+            b.iter(|| spline(black_box(&points), Fitting { tolerance: 0.01, corner: CORNER }).is_some());
         });
     }
     group.finish();
