@@ -260,8 +260,12 @@ impl Attempt<'_> {
 fn nothing_splined(motion: &Motion) -> Diagnostic {
     let (name, lines) = (motion.name, "lines stay lines");
     let message = match motion.form {
-        Form::Polynomial { .. } | Form::Nurbs => format!("{lines}: no run is long enough for a spline to save blocks"),
-        Form::Lines | Form::Through(_) => format!("{lines}: the motion is `{name}`, where no spline saves blocks"),
+        Form::Polynomial { .. } | Form::Nurbs => {
+            format!("{lines}: no run is long enough for a spline to save blocks")
+        }
+        Form::Lines | Form::Through(_) => {
+            format!("{lines}: the motion is `{name}`, where no spline saves blocks")
+        }
     };
     Diagnostic::note("nothing-fitted", message)
 }

@@ -55,8 +55,9 @@ pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sou
         name(input.map_or("", |source| source.name.as_str()))
     );
     let mut first = true;
-    let splined =
-        |step: usize| report.splined.as_ref().is_some_and(|splined| splined.steps.binary_search(&step).is_ok());
+    let splined = |step: usize| {
+        report.splined.as_ref().is_some_and(|splined| splined.steps.binary_search(&step).is_ok())
+    };
     for (step, (located, count)) in intent.program.steps.iter().zip(&report.blocks).enumerate() {
         let count = *count as usize;
         let (from, file) = known.entry(located.span.source).or_insert_with(|| {

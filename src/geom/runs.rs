@@ -159,7 +159,8 @@ mod tests {
     #[test]
     fn a_point_beside_the_spline_is_as_far_as_it_is() {
         let place = |x: f64, y: f64| -> Position { [x, y, 0.0, 0.0, 0.0, 0.0] };
-        let pieces = [Bezier::line(place(0.0, 0.0), place(5.0, 0.0)), Bezier::line(place(5.0, 0.0), place(5.0, 5.0))];
+        let pieces =
+            [Bezier::line(place(0.0, 0.0), place(5.0, 0.0)), Bezier::line(place(5.0, 0.0), place(5.0, 5.0))];
         let points = [place(0.0, 0.0), place(2.0, 0.25), place(5.0, 0.0), place(5.0, 5.0)];
         let found = compare(&points, &pieces);
         assert_eq!((found.farthest, found.corners, found.after), (0.25, 1, 0.0));

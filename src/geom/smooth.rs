@@ -3,16 +3,18 @@
 //! 1. **Corners.** The run is simplified within the tolerance (Douglas and Peucker). A corner is where the simplified path turns
 //!    by more than the corner's angle, and the run too, seen from a few tolerances on either side: noise turns the points of
 //!    a run but not its simplified path, and an arc turns that but not what is seen from near.
-//! 2. **A spline from corner to corner**, by least squares on the chord lengths, its ends exact. It begins with one span; every
+//! 2. **A spline from corner to corner**, by least squares on the chord lengths, its ends exact; a point's parameter
+//!    moves to its foot from trial to trial (Hoschek 1988). It begins with one span; every
 //!    span that is too far from a point is halved, until all hold. A long line among short ones gets points of its own, so
 //!    that the spline has no room to swing beside it.
 //! 3. **One curve.** Splines are put together with triple knots at the corners.
 //!
-//! Where halving a span leaves it fewer than `LEAST` points the run stays lines. How far the result is from the polyline
+//! Where halving a span would leave it fewer than `LEAST` points the run is broken at its farthest point. How far the result is from the polyline
 //! is proved on the text that is read back.
 
 use super::bezier::Bezier;
 use super::elementary::cos;
+use super::follow::foot;
 use super::nurbs::Nurbs;
 use crate::units::{MAX_AXES, Position};
 
@@ -42,6 +44,15 @@ const LONG: f64 = 8.0;
 /// The farthest point is sought among at most so many, which bounds the work.
 const BLOCK: usize = 2048;
 
+/// A point's parameter moves on only where the spline is within so many tolerances of it: farther off, its foot is anywhere.
+const GRASP: f64 = 16.0;
+
+/// So many points on either side of a corner may be the corner itself.
+const ABOUT: usize = 16;
+
+/// A run that no spline follows is broken at its farthest points at most so often, one part within another.
+const DEPTH: usize = 8;
+
 /// How often spans are halved.
 const ROUNDS: usize = 40;
 
@@ -58,9 +69,21 @@ pub fn spline(points: &[Position], fitting: Fitting) -> Option<Nurbs> {
     let corners = corners(points, tolerance, corner);
     let (mut pieces, mut knots, mut control) = (0, Vec::new(), Vec::new());
     let mut t = 0.0;
-    for pair in corners.windows(2) {
-        let run = &points[pair[0]..=pair[1]];
-        let Run { inner, points, length } = smooth(run, tolerance).unwrap_or_else(|| lines(run));
+    // Runs that are still to be made, the first one last.
+    let mut stack: Vec<(usize, usize, usize)> = corners.windows(2).rev().map(|p| (p[0], p[1], 0)).collect();
+    while let Some((first, last, depth)) = stack.pop() {
+        let run = &points[first..=last];
+        let Run { inner, points, length } = match smooth(run, tolerance) {
+            Ok(run) => run,
+            Err(breaks) if depth < DEPTH && !breaks.is_empty() => {
+                let ends = std::iter::once(0).chain(breaks.iter().copied());
+                let parts = ends.zip(breaks.iter().copied().chain([last - first]));
+                let parts: Vec<_> = parts.map(|(a, b)| (first + a, first + b, depth + 1)).collect();
+                stack.extend(parts.into_iter().rev());
+                continue;
+            }
+            Err(_) => lines(run),
+        };
         if length == 0.0 {
             continue;
         }
@@ -126,11 +149,32 @@ fn corners(points: &[Position], tolerance: f64, corner: f64) -> Vec<usize> {
             (triple[1] + 1..triple[2]).find(away).unwrap_or(triple[2]),
         ];
         if cosine(&a, &b, &c) < least && cosine(&points[near[0]], &b, &points[near[1]]) < least {
-            corners.push(triple[1]);
+            corners.push(sharpest(points, near, triple[1]));
         }
     }
     corners.push(points.len() - 1);
     corners
+}
+
+/// Of the points about a corner the one from which lines to both ends of its surroundings leave least over, in squares: noise
+/// makes the simplified path turn a point too early or too late.
+fn sharpest(points: &[Position], [first, last]: [usize; 2], corner: usize) -> usize {
+    let left_over = |at: usize| {
+        let (before, after) =
+            (Bezier::line(points[first], points[at]), Bezier::line(points[at], points[last]));
+        (first + 1..last)
+            .map(|i| {
+                let line = if i < at { &before } else { &after };
+                let off = distance(&points[i], &line.eval(foot(line, &points[i], 0.5, 0.0, 1.0)));
+                off * off
+            })
+            .sum::<f64>()
+    };
+    let about = (first + 1).max(corner.saturating_sub(ABOUT))..last.min(corner + ABOUT + 1);
+    about
+        .map(|i| (left_over(i), i))
+        .fold((f64::INFINITY, corner), |least, own| if own.0 < least.0 { own } else { least })
+        .1
 }
 
 /// The cosine of the turn at b on the way from a to c.
@@ -178,45 +222,52 @@ fn simplified(points: &[Position], tolerance: f64) -> Vec<usize> {
         let before = (0..seam).rev().find(|i| keep[*i]).unwrap_or(0);
         let after = (seam + 1..points.len()).find(|i| keep[*i]).unwrap_or(points.len() - 1);
         let line = Bezier::line(points[before], points[after]);
-        let t = super::follow::foot(&line, &points[seam], 0.5, 0.0, 1.0);
+        let t = foot(&line, &points[seam], 0.5, 0.0, 1.0);
         keep[seam] = tolerance < distance(&points[seam], &line.eval(t));
     }
     (0..points.len()).filter(|i| keep[*i]).collect()
 }
 
-/// The least-squares spline of a run; none where its points are too few for the tolerance.
-fn smooth(run: &[Position], tolerance: f64) -> Option<Run> {
-    let (at, places) = parameters(run)?;
+/// The least-squares spline of a run. Where points are too few for the tolerance: the farthest of them, where the run is better
+/// broken.
+fn smooth(run: &[Position], tolerance: f64) -> Result<Run, Vec<usize>> {
+    let Parameters { mut at, places, of } = parameters(run).ok_or_else(Vec::new)?;
     let length = at[at.len() - 1];
     if run.len() == 2 {
-        return Some(lines(run));
+        return Ok(lines(run));
     }
     let mut breaks = vec![0.0, length];
     for _ in 0..ROUNDS {
-        let Trial { points, far, count } = trial(&at, &places, &breaks, tolerance)?;
-        if !far.iter().any(|far| *far) {
-            let (breaks, points) = fewer(&at, &places, &breaks, points, tolerance);
-            return Some(Run { inner: breaks[1..breaks.len() - 1].to_vec(), points, length });
+        let Trial { points, far, count } =
+            trial(&mut at, &places, &breaks, tolerance).ok_or_else(Vec::new)?;
+        if far.iter().all(Option::is_none) {
+            let (breaks, points) = fewer(&mut at, &places, &breaks, points, tolerance);
+            return Ok(Run { inner: breaks[1..breaks.len() - 1].to_vec(), points, length });
+        }
+        let few = |i: &usize| far[*i].is_some() && count[*i] < 2 * LEAST;
+        if (0..far.len()).any(|i| few(&i)) {
+            let mut breaks: Vec<usize> =
+                (0..far.len()).filter(few).filter_map(|i| Some(of[far[i]?.1])).collect();
+            breaks.dedup();
+            breaks.retain(|at| 0 < *at && at + 1 < run.len());
+            return Err(breaks);
         }
         let mut finer = vec![0.0];
         for (i, far) in far.iter().enumerate() {
-            if *far {
-                if count[i] < 2 * LEAST {
-                    return None;
-                }
+            if far.is_some() {
                 finer.push(0.5 * (breaks[i] + breaks[i + 1]));
             }
             finer.push(breaks[i + 1]);
         }
         breaks = finer;
     }
-    None
+    Err(Vec::new())
 }
 
 /// Halving overshoots by up to two. Fewer spans in the same proportions are sought by bisection between half as many and
 /// all: the break i of k stands where the spans so far count i/k of all.
 fn fewer(
-    at: &[f64],
+    at: &mut [f64],
     places: &[Position],
     breaks: &[f64],
     points: Vec<Position>,
@@ -225,6 +276,7 @@ fn fewer(
     let all = breaks.len() - 1;
     let (mut low, mut high) = (all / 2, all);
     let mut best = (breaks.to_vec(), points);
+    let mut own = at.to_vec();
     while low + 1 < high {
         let k = low.midpoint(high);
         let spread: Vec<f64> = (0..=k)
@@ -234,10 +286,12 @@ fn fewer(
                 breaks[j] + (x - j as f64) * (breaks[j + 1] - breaks[j])
             })
             .collect();
-        match trial(at, places, &spread, tolerance) {
-            Some(found) if !found.far.iter().any(|far| *far) => {
+        own.copy_from_slice(at);
+        match trial(&mut own, places, &spread, tolerance) {
+            Some(found) if found.far.iter().all(Option::is_none) => {
                 best = (spread, found.points);
                 high = k;
+                at.copy_from_slice(&own);
             }
             _ => low = k,
         }
@@ -245,35 +299,65 @@ fn fewer(
     best
 }
 
-/// A spline on some breaks: its control points, which spans are too far from a point, how many points each has.
+/// A spline on some breaks.
 struct Trial {
+    /// Its control points.
     points: Vec<Position>,
-    far: Vec<bool>,
+    /// For each span the square of the distance of the farthest point, where that is too far, and which one.
+    far: Vec<Option<(f64, usize)>>,
+    /// How many points each span has.
     count: Vec<usize>,
 }
 
-fn trial(at: &[f64], places: &[Position], breaks: &[f64], tolerance: f64) -> Option<Trial> {
+/// The least-squares spline on some breaks. Chord lengths of noisy points drift from the length of the path by far more than
+/// the noise, so each point's parameter moves on to the foot of the point, by one of Newton's steps and in order, for this
+/// measure and for the next trial.
+fn trial(at: &mut [f64], places: &[Position], breaks: &[f64], tolerance: f64) -> Option<Trial> {
     let points = solve(at, places, breaks)?;
-    let (mut far, mut count) = (vec![false; breaks.len() - 1], vec![0usize; breaks.len() - 1]);
-    let mut span = 0;
-    for (t, place) in at.iter().zip(places) {
-        while span + 2 < breaks.len() && breaks[span + 1] < *t {
+    let (mut far, mut count) = (vec![None; breaks.len() - 1], vec![0usize; breaks.len() - 1]);
+    let (mut span, mut before, last) = (0, 0.0, at.len() - 1);
+    let length = at[last];
+    for (i, place) in places.iter().enumerate() {
+        let t = at[i];
+        while span + 2 < breaks.len() && breaks[span + 1] < t {
             span += 1;
         }
         count[span] += 1;
-        let b = basis(breaks, span, *t);
-        let mut off = 0.0;
+        let (b, slope) = basis(breaks, span, t);
+        let (mut r, mut d) = ([0.0; MAX_AXES], [0.0; MAX_AXES]);
         for axis in 0..MAX_AXES {
-            let x: f64 = (0..4).map(|k| b[k] * points[span + k][axis]).sum();
-            off += (x - place[axis]) * (x - place[axis]);
+            let sum = |b: &[f64; 4]| (0..4).map(|k| b[k] * points[span + k][axis]).sum::<f64>();
+            (r[axis], d[axis]) = (sum(&b) - place[axis], sum(&slope));
         }
-        far[span] |= tolerance * tolerance < off;
+        let dot = |a: &Position, b: &Position| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut step = -dot(&r, &d) / dot(&d, &d);
+        if i == 0 || i == last || GRASP * GRASP * tolerance * tolerance < dot(&r, &r) || !step.is_finite() {
+            step = 0.0;
+        }
+        let own = (t + step).clamp(before, length);
+        let off: Position = std::array::from_fn(|axis| r[axis] + (own - t) * d[axis]);
+        let off = dot(&off, &off);
+        if tolerance * tolerance < off && far[span].is_none_or(|(most, _)| most < off) {
+            far[span] = Some((off, i));
+        }
+        at[i] = own;
+        before = own;
     }
     Some(Trial { points, far, count })
 }
 
-/// Chord lengths of the points, and of points put on long lines, with the places.
-fn parameters(run: &[Position]) -> Option<(Vec<f64>, Vec<Position>)> {
+/// Places to lead a spline along.
+struct Parameters {
+    /// Where on it each place is.
+    at: Vec<f64>,
+    /// The points, and points put on long lines.
+    places: Vec<Position>,
+    /// Which point each is, or which comes after it.
+    of: Vec<usize>,
+}
+
+/// The places of a run at their chord lengths.
+fn parameters(run: &[Position]) -> Option<Parameters> {
     let mut lengths: Vec<f64> = run.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
     let own = lengths.clone();
     lengths.sort_unstable_by(f64::total_cmp);
@@ -281,9 +365,9 @@ fn parameters(run: &[Position]) -> Option<(Vec<f64>, Vec<Position>)> {
     if !(0.0 < middling) {
         return None;
     }
-    let (mut at, mut places) = (vec![0.0], vec![run[0]]);
+    let (mut at, mut places, mut of) = (vec![0.0], vec![run[0]], vec![0]);
     let mut t = 0.0;
-    for (pair, length) in run.windows(2).zip(own) {
+    for (i, (pair, length)) in run.windows(2).zip(own).enumerate() {
         if length == 0.0 {
             continue;
         }
@@ -291,30 +375,35 @@ fn parameters(run: &[Position]) -> Option<(Vec<f64>, Vec<Position>)> {
         for part in 1..=parts {
             let share = part as f64 / parts as f64;
             at.push(t + share * length);
-            places.push(std::array::from_fn(|i| pair[0][i] + share * (pair[1][i] - pair[0][i])));
+            places.push(std::array::from_fn(|axis| pair[0][axis] + share * (pair[1][axis] - pair[0][axis])));
+            of.push(i + 1);
         }
         t += length;
     }
-    Some((at, places))
+    Some(Parameters { at, places, of })
 }
 
-/// The four cubic B-splines that are not zero on a span, simple inner knots and four-fold ends, by Cox and de Boor.
-fn basis(breaks: &[f64], span: usize, t: f64) -> [f64; 4] {
+/// The four cubic B-splines that are not zero on a span, and their derivatives; simple inner knots and four-fold ends, by Cox
+/// and de Boor.
+fn basis(breaks: &[f64], span: usize, t: f64) -> ([f64; 4], [f64; 4]) {
     let last = breaks.len() - 1;
     let knot = |i: isize| breaks[i.clamp(0, last as isize) as usize];
     let s = span as isize;
-    let mut b = [1.0, 0.0, 0.0, 0.0];
+    let (mut b, mut slope) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
     for k in 1..4isize {
         let mut saved = 0.0;
+        slope = [0.0; 4];
         for r in 0..k {
             let (right, left) = (knot(s + r + 1), knot(s + r + 1 - k));
             let share = b[r as usize] / (right - left);
             b[r as usize] = saved + (right - t) * share;
             saved = (t - left) * share;
+            slope[r as usize] -= k as f64 * share;
+            slope[r as usize + 1] += k as f64 * share;
         }
         b[k as usize] = saved;
     }
-    b
+    (b, slope)
 }
 
 /// Control points of the least squares, the first and the last at the first and the last place. The normal equations
@@ -328,7 +417,7 @@ fn solve(at: &[f64], places: &[Position], breaks: &[f64]) -> Option<Vec<Position
         while span + 2 < breaks.len() && breaks[span + 1] < *t {
             span += 1;
         }
-        let b = basis(breaks, span, *t);
+        let (b, _) = basis(breaks, span, *t);
         for i in 0..4 {
             for j in i..4 {
                 band[span + i][j - i] += b[i] * b[j];

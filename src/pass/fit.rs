@@ -20,7 +20,9 @@ pub fn fit(intent: &Intent, machine: &Machine, fitting: Fitting) -> Intent {
     let scaled = |p: &Position| metric.scaled(&Bezier::line(*p, *p)).start();
     let unscaled = |p: &Position| metric.unscaled(&Bezier::line(*p, *p)).start();
     for located in &mut fitted.program.steps {
-        let Step::Cut(Cut { role: Role::Path | Role::AsAsked, curve, .. }) = &mut located.step else { continue };
+        let Step::Cut(Cut { role: Role::Path | Role::AsAsked, curve, .. }) = &mut located.step else {
+            continue;
+        };
         let Curve::Lines(line) = curve else { continue };
         let points: Vec<Position> =
             std::iter::once(line.start).chain(line.points()).map(|p| scaled(&p)).collect();

@@ -5,11 +5,11 @@
 mod stages;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use splinepost::geom::smooth::{CORNER, Fitting, spline};
 use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
 use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
 use splinepost::geom::oddeven::OddEven;
+use splinepost::geom::smooth::{CORNER, Fitting, spline};
 use splinepost::machine::Machine;
 use splinepost::simulate::partition;
 use splinepost::simulate::partition::{Cycles, Method, Piece, Weights};
