@@ -25,6 +25,7 @@
 //! | [`geom`] | curves, fits, and the bounds that are the proof |
 //! | [`machine`], [`tables`] | machine files |
 //! | [`front`] | what a user writes |
+//! | [`translate`] | NC programs as inputs |
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
@@ -51,6 +52,7 @@ pub mod simulate;
 pub mod source;
 pub mod summary;
 pub mod tables;
+pub mod translate;
 pub mod units;
 pub mod verify;
 
@@ -125,7 +127,24 @@ pub fn compile(
     machine: &Machine,
     options: &Options,
 ) -> Result<Output, Failure> {
-    let intent = with_options((language.parse)(sources)?, options);
+    compile_intent((language.parse)(sources)?, machine, options)
+}
+
+/// Compiles an NC program that was written for the machine `from` for another one, and proves it against that program.
+///
+/// # Errors
+/// As [`compile`]; and where the program cannot be read, or asks for what only its own machine knows.
+pub fn recompile(
+    sources: &Sources,
+    from: &Machine,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Output, Failure> {
+    compile_intent(translate::parse(sources, from)?, machine, options)
+}
+
+fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
+    let intent = with_options(intent, options);
     let intent = pass::place::place(intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
     if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {

@@ -4,6 +4,7 @@ use super::io::{self, Console};
 use super::{MethodName, machine, motion, tolerance};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::front::{self, Language};
+use splinepost::machine::Machine;
 use splinepost::source::{Encoding, Source, SourceId, Sources};
 use splinepost::summary::Summary;
 use splinepost::{Options, diagnostic::Diagnostic};
@@ -28,8 +29,8 @@ pub(crate) struct Compile {
     /// Tolerance in mm, instead of the input's or the machine's
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
-    /// The input's language, where it cannot be told from its text
-    #[arg(long, value_name = "LANGUAGE")]
+    /// The input's language, where it cannot be told from its text; or the machine that it is an NC program for
+    #[arg(long, value_name = "LANGUAGE|MACHINE")]
     from: Option<String>,
     /// Write to this file which lines of the input each block came from (JSON)
     #[arg(long, value_name = "FILE", conflicts_with = "no_verify")]
@@ -53,7 +54,11 @@ impl Compile {
         *sources = Sources::new(io::read_input(&self.input)?);
         self.reading.tell(sources)?;
         let machine = machine(&self.to, sources)?;
-        let language = language(self.from.as_deref(), sources)?;
+        let written_for = self.machine_of_input(sources)?;
+        let known = match written_for {
+            Some(_) => None,
+            None => Some(language(self.from.as_deref(), sources)?),
+        };
         if let Some(output) = &self.output
             && (io::is_read(output, sources) || io::same_file(output, &self.to))
         {
@@ -73,7 +78,12 @@ impl Compile {
         if self.motion.as_deref() == Some("auto") {
             machine.motion = None;
         }
-        let output = splinepost::compile(sources, language, &machine, &options).map_err(|failure| {
+        let compiled = match (&written_for, known) {
+            (Some(from), _) => splinepost::recompile(sources, from, &machine, &options),
+            (None, Some(language)) => splinepost::compile(sources, language, &machine, &options),
+            (None, None) => Err(Diagnostics::new().into()),
+        };
+        let output = compiled.map_err(|failure| {
             sources.program = failure.program;
             failure.diagnostics
         })?;
@@ -101,6 +111,21 @@ impl Compile {
     }
 }
 
+impl Compile {
+    /// The machine that the input is an NC program for, where `--from` names one.
+    fn machine_of_input(&self, sources: &mut Sources) -> Result<Option<Machine>, Diagnostics> {
+        match &self.from {
+            Some(name) if front::find(name).is_none() && is_machine(name) => machine(name, sources).map(Some),
+            Some(_) | None => Ok(None),
+        }
+    }
+}
+
+/// Whether a name is that of a built-in machine, or of a file.
+fn is_machine(name: &str) -> bool {
+    Machine::built_in(name).is_some() || std::path::Path::new(name).is_file()
+}
+
 /// The angle of a corner must be one.
 fn corner(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -123,8 +148,10 @@ fn language_of(from: Option<&str>, sources: &Sources) -> Result<&'static Languag
     let language = match from {
         Some(name) => front::find(name).ok_or_else(|| {
             let names: Vec<&str> = front::LANGUAGES.iter().map(|language| language.name).collect();
-            Diagnostic::error("language-unknown", format!("`{name}` is not a language"))
-                .hint(format!("known are {}", names.join(", ")))
+            Diagnostic::error("language-unknown", format!("`{name}` is not a language")).hint(format!(
+                "known are {}; `compile` takes a machine too, whose NC program the input is",
+                names.join(", ")
+            ))
         })?,
         None => front::detect(input)?,
     };

@@ -12,11 +12,13 @@
 //! Where halving a span would leave it fewer than `LEAST` points the run is broken at its farthest point. How far the result is from the polyline
 //! is proved on the text that is read back.
 
+mod corners;
+mod squares;
+
 use super::bezier::Bezier;
-use super::elementary::cos;
-use super::follow::foot;
 use super::nurbs::Nurbs;
 use crate::units::{MAX_AXES, Position};
+use squares::{basis, solve};
 
 /// How runs of points become splines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,13 +29,9 @@ pub struct Fitting {
     pub corner: f64,
 }
 
-/// A turn above this is a corner, degrees, where nobody says otherwise. Seen from [`REACH`] tolerances on either side an arc
-/// of radius R turns by REACH δ/R, so that arcs of more than 18 tolerances are no corners.
+/// A turn above this is a corner, degrees, where nobody says otherwise. Seen from 8 tolerances δ on either side an arc
+/// of radius R turns by 8 δ/R, so that arcs of more than 18 tolerances are no corners.
 pub const CORNER: f64 = 25.0;
-
-/// So many tolerances on either side of a corner the path is straight, or nearly. Noise of half the tolerance turns what is
-/// seen from there by at most 2 · 2/16 = ¼ radian, and mostly by far less.
-const REACH: f64 = 8.0;
 
 /// A span is not halved below so many points.
 const LEAST: usize = 4;
@@ -41,17 +39,17 @@ const LEAST: usize = 4;
 /// A line longer than so many middling ones gets points of its own.
 const LONG: f64 = 8.0;
 
-/// The farthest point is sought among at most so many, which bounds the work.
-const BLOCK: usize = 2048;
-
 /// A point's parameter moves on only where the spline is within so many tolerances of it: farther off, its foot is anywhere.
 const GRASP: f64 = 16.0;
 
-/// So many points on either side of a corner may be the corner itself.
-const ABOUT: usize = 16;
-
 /// A run that no spline follows is broken at its farthest points at most so often, one part within another.
 const DEPTH: usize = 8;
+
+/// The fewest spans are sought to within one in so many.
+const NEAR_ENOUGH: usize = 64;
+
+/// How often unlucky spans are halved while fewer are sought.
+const MENDED: usize = 4;
 
 /// How often spans are halved.
 const ROUNDS: usize = 40;
@@ -66,7 +64,7 @@ pub fn spline(points: &[Position], fitting: Fitting) -> Option<Nurbs> {
     if points.len() < LEAST + 1 {
         return None;
     }
-    let corners = corners(points, tolerance, corner);
+    let corners = corners::of(points, tolerance, corner);
     let (mut pieces, mut knots, mut control) = (0, Vec::new(), Vec::new());
     let mut t = 0.0;
     // Runs that are still to be made, the first one last.
@@ -131,103 +129,6 @@ fn lines(run: &[Position]) -> Run {
     Run { inner, points, length: t }
 }
 
-/// Where a run has corners, its first and last point included.
-fn corners(points: &[Position], tolerance: f64, corner: f64) -> Vec<usize> {
-    let kept = simplified(points, tolerance);
-    let least = cos(corner / crate::units::DEGREES);
-    let mut corners = vec![0];
-    for triple in kept.windows(3) {
-        let [a, b, c] = [0, 1, 2].map(|k| points[triple[k]]);
-        let (before, after) = (distance(&a, &b), distance(&b, &c));
-        if before.min(after) < REACH * tolerance {
-            continue;
-        }
-        let reach = REACH * tolerance;
-        let away = |i: &usize| reach <= distance(&points[*i], &b);
-        let near = [
-            (triple[0]..triple[1]).rev().find(away).unwrap_or(triple[0]),
-            (triple[1] + 1..triple[2]).find(away).unwrap_or(triple[2]),
-        ];
-        if cosine(&a, &b, &c) < least && cosine(&points[near[0]], &b, &points[near[1]]) < least {
-            corners.push(sharpest(points, near, triple[1]));
-        }
-    }
-    corners.push(points.len() - 1);
-    corners
-}
-
-/// Of the points about a corner the one from which lines to both ends of its surroundings leave least over, in squares: noise
-/// makes the simplified path turn a point too early or too late.
-fn sharpest(points: &[Position], [first, last]: [usize; 2], corner: usize) -> usize {
-    let left_over = |at: usize| {
-        let (before, after) =
-            (Bezier::line(points[first], points[at]), Bezier::line(points[at], points[last]));
-        (first + 1..last)
-            .map(|i| {
-                let line = if i < at { &before } else { &after };
-                let off = distance(&points[i], &line.eval(foot(line, &points[i], 0.5, 0.0, 1.0)));
-                off * off
-            })
-            .sum::<f64>()
-    };
-    let about = (first + 1).max(corner.saturating_sub(ABOUT))..last.min(corner + ABOUT + 1);
-    about
-        .map(|i| (left_over(i), i))
-        .fold((f64::INFINITY, corner), |least, own| if own.0 < least.0 { own } else { least })
-        .1
-}
-
-/// The cosine of the turn at b on the way from a to c.
-fn cosine(a: &Position, b: &Position, c: &Position) -> f64 {
-    let turn: f64 = (0..MAX_AXES).map(|i| (b[i] - a[i]) * (c[i] - b[i])).sum();
-    turn / (distance(a, b) * distance(b, c))
-}
-
-/// The points that are kept when those within `tolerance` of the lines between kept ones are left out.
-fn simplified(points: &[Position], tolerance: f64) -> Vec<usize> {
-    let mut keep = vec![false; points.len()];
-    (keep[0], keep[points.len() - 1]) = (true, true);
-    let mut stack: Vec<(usize, usize)> = (0..points.len() - 1)
-        .step_by(BLOCK)
-        .map(|first| (first, (first + BLOCK).min(points.len() - 1)))
-        .collect();
-    let seams: Vec<usize> = stack.iter().skip(1).map(|(first, _)| *first).collect();
-    for seam in &seams {
-        keep[*seam] = true;
-    }
-    while let Some((first, last)) = stack.pop() {
-        let line = Bezier::line(points[first], points[last]);
-        let length = distance(&points[first], &points[last]);
-        let off = |i: usize| {
-            if length == 0.0 {
-                return distance(&points[i], &points[first]);
-            }
-            let along: f64 = (0..MAX_AXES)
-                .map(|k| (points[i][k] - points[first][k]) * (points[last][k] - points[first][k]))
-                .sum();
-            let share = (along / (length * length)).clamp(0.0, 1.0);
-            distance(&points[i], &line.eval(share))
-        };
-        let far = (first + 1..last)
-            .map(|i| (off(i), i))
-            .fold((0.0, first), |most, own| if most.0 < own.0 { own } else { most });
-        if tolerance < far.0 {
-            keep[far.1] = true;
-            stack.push((first, far.1));
-            stack.push((far.1, last));
-        }
-    }
-    // A seam is no place of the path's own: it stays only where both sides turn about it.
-    for seam in seams {
-        let before = (0..seam).rev().find(|i| keep[*i]).unwrap_or(0);
-        let after = (seam + 1..points.len()).find(|i| keep[*i]).unwrap_or(points.len() - 1);
-        let line = Bezier::line(points[before], points[after]);
-        let t = foot(&line, &points[seam], 0.5, 0.0, 1.0);
-        keep[seam] = tolerance < distance(&points[seam], &line.eval(t));
-    }
-    (0..points.len()).filter(|i| keep[*i]).collect()
-}
-
 /// The least-squares spline of a run. Where points are too few for the tolerance: the farthest of them, where the run is better
 /// broken.
 fn smooth(run: &[Position], tolerance: f64) -> Result<Run, Vec<usize>> {
@@ -238,34 +139,27 @@ fn smooth(run: &[Position], tolerance: f64) -> Result<Run, Vec<usize>> {
     }
     let mut breaks = vec![0.0, length];
     for _ in 0..ROUNDS {
-        let Trial { points, far, count } =
-            trial(&mut at, &places, &breaks, tolerance).ok_or_else(Vec::new)?;
-        if far.iter().all(Option::is_none) {
-            let (breaks, points) = fewer(&mut at, &places, &breaks, points, tolerance);
+        let found = trial(&mut at, &places, &breaks, tolerance).ok_or_else(Vec::new)?;
+        if found.far.iter().all(Option::is_none) {
+            let (breaks, points) = fewer(&mut at, &places, &breaks, found.points, tolerance);
             return Ok(Run { inner: breaks[1..breaks.len() - 1].to_vec(), points, length });
         }
-        let few = |i: &usize| far[*i].is_some() && count[*i] < 2 * LEAST;
-        if (0..far.len()).any(|i| few(&i)) {
-            let mut breaks: Vec<usize> =
-                (0..far.len()).filter(few).filter_map(|i| Some(of[far[i]?.1])).collect();
+        let Some(finer) = halved(&breaks, &found) else {
+            let few = |i: &usize| found.count[*i] < 2 * LEAST;
+            let farthest = |i: usize| Some(of[found.far[i]?.1]);
+            let mut breaks: Vec<usize> = (0..found.far.len()).filter(few).filter_map(farthest).collect();
             breaks.dedup();
             breaks.retain(|at| 0 < *at && at + 1 < run.len());
             return Err(breaks);
-        }
-        let mut finer = vec![0.0];
-        for (i, far) in far.iter().enumerate() {
-            if far.is_some() {
-                finer.push(0.5 * (breaks[i] + breaks[i + 1]));
-            }
-            finer.push(breaks[i + 1]);
-        }
+        };
         breaks = finer;
     }
     Err(Vec::new())
 }
 
 /// Halving overshoots by up to two. Fewer spans in the same proportions are sought by bisection between half as many and
-/// all: the break i of k stands where the spans so far count i/k of all.
+/// all: the break i of k stands where the spans so far count i/k of all. Of thousands of spans a few are unlucky, and those
+/// are halved.
 fn fewer(
     at: &mut [f64],
     places: &[Position],
@@ -277,9 +171,9 @@ fn fewer(
     let (mut low, mut high) = (all / 2, all);
     let mut best = (breaks.to_vec(), points);
     let mut own = at.to_vec();
-    while low + 1 < high {
+    while low + 1 + all / NEAR_ENOUGH < high {
         let k = low.midpoint(high);
-        let spread: Vec<f64> = (0..=k)
+        let mut spread: Vec<f64> = (0..=k)
             .map(|i| {
                 let x = i as f64 * all as f64 / k as f64;
                 let j = (x as usize).min(all - 1);
@@ -287,16 +181,44 @@ fn fewer(
             })
             .collect();
         own.copy_from_slice(at);
-        match trial(&mut own, places, &spread, tolerance) {
-            Some(found) if found.far.iter().all(Option::is_none) => {
-                best = (spread, found.points);
+        let mut found = None;
+        for _ in 0..MENDED {
+            let Some(next) = trial(&mut own, places, &spread, tolerance) else { break };
+            if next.far.iter().all(Option::is_none) {
+                found = Some(next.points);
+                break;
+            }
+            let Some(finer) = halved(&spread, &next) else { break };
+            if best.0.len() <= finer.len() {
+                break;
+            }
+            spread = finer;
+        }
+        match found {
+            Some(points) => {
+                best = (spread, points);
                 high = k;
                 at.copy_from_slice(&own);
             }
-            _ => low = k,
+            None => low = k,
         }
     }
     best
+}
+
+/// The breaks with those spans halved that are too far from a point; none where one of them has too few points for that.
+fn halved(breaks: &[f64], trial: &Trial) -> Option<Vec<f64>> {
+    let mut finer = vec![0.0];
+    for (i, far) in trial.far.iter().enumerate() {
+        if far.is_some() {
+            if trial.count[i] < 2 * LEAST {
+                return None;
+            }
+            finer.push(0.5 * (breaks[i] + breaks[i + 1]));
+        }
+        finer.push(breaks[i + 1]);
+    }
+    Some(finer)
 }
 
 /// A spline on some breaks.
@@ -381,96 +303,6 @@ fn parameters(run: &[Position]) -> Option<Parameters> {
         t += length;
     }
     Some(Parameters { at, places, of })
-}
-
-/// The four cubic B-splines that are not zero on a span, and their derivatives; simple inner knots and four-fold ends, by Cox
-/// and de Boor.
-fn basis(breaks: &[f64], span: usize, t: f64) -> ([f64; 4], [f64; 4]) {
-    let last = breaks.len() - 1;
-    let knot = |i: isize| breaks[i.clamp(0, last as isize) as usize];
-    let s = span as isize;
-    let (mut b, mut slope) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
-    for k in 1..4isize {
-        let mut saved = 0.0;
-        slope = [0.0; 4];
-        for r in 0..k {
-            let (right, left) = (knot(s + r + 1), knot(s + r + 1 - k));
-            let share = b[r as usize] / (right - left);
-            b[r as usize] = saved + (right - t) * share;
-            saved = (t - left) * share;
-            slope[r as usize] -= k as f64 * share;
-            slope[r as usize + 1] += k as f64 * share;
-        }
-        b[k as usize] = saved;
-    }
-    (b, slope)
-}
-
-/// Control points of the least squares, the first and the last at the first and the last place. The normal equations
-/// have a band of seven, so that time and memory are linear.
-fn solve(at: &[f64], places: &[Position], breaks: &[f64]) -> Option<Vec<Position>> {
-    let n = breaks.len() + 2;
-    let mut band = vec![[0.0f64; 4]; n];
-    let mut right = vec![[0.0f64; MAX_AXES]; n];
-    let mut span = 0;
-    for (t, place) in at.iter().zip(places) {
-        while span + 2 < breaks.len() && breaks[span + 1] < *t {
-            span += 1;
-        }
-        let (b, _) = basis(breaks, span, *t);
-        for i in 0..4 {
-            for j in i..4 {
-                band[span + i][j - i] += b[i] * b[j];
-            }
-            for axis in 0..MAX_AXES {
-                right[span + i][axis] += b[i] * place[axis];
-            }
-        }
-    }
-    // A little stiffness, for spans whose points leave a control point free.
-    let trace = 1.0e-9 * band.iter().map(|row| row[0]).sum::<f64>() / n as f64;
-    let ends = [(0, places[0]), (n - 1, places[places.len() - 1])];
-    for row in &mut band {
-        row[0] += trace;
-    }
-    for (fixed, place) in ends {
-        for other in fixed.saturating_sub(3)..(fixed + 4).min(n) {
-            let (low, high) = (other.min(fixed), other.max(fixed));
-            let a = band[low][high - low];
-            if other != fixed {
-                for axis in 0..MAX_AXES {
-                    right[other][axis] -= a * place[axis];
-                }
-                band[low][high - low] = 0.0;
-            }
-        }
-        band[fixed][0] = 1.0;
-        right[fixed] = place;
-    }
-    // Cholesky's L·D·Lᵀ within the band.
-    for i in 0..n {
-        let d = band[i][0];
-        if !(0.0 < d) {
-            return None;
-        }
-        let row = band[i];
-        for j in 1..4.min(n - i) {
-            let share = row[j] / d;
-            for k in j..4.min(n - i) {
-                band[i + j][k - j] -= share * row[k];
-            }
-            for axis in 0..MAX_AXES {
-                right[i + j][axis] -= share * right[i][axis];
-            }
-        }
-    }
-    for i in (0..n).rev() {
-        for axis in 0..MAX_AXES {
-            let known: f64 = (1..4.min(n - i)).map(|j| band[i][j] * right[i + j][axis]).sum();
-            right[i][axis] = (right[i][axis] - known) / band[i][0];
-        }
-    }
-    Some(right)
 }
 
 #[cfg(test)]
