@@ -1,7 +1,7 @@
 //! A run of points beside the spline that was made of it.
 //!
-//! The points are run along the spline in order. Of each the distance from one place of the spline is taken, behind that of
-//! the point before it: never less than its distance from the whole, so that the greatest is an upper bound.
+//! The points are run along the spline. Of each the distance from one place of the spline is taken, near that of the point
+//! before it: never less than its distance from the whole, so that the greatest is an upper bound.
 //!
 //! Curvature of points is that of the circle through three that follow each other, 4 · area / (a b c); of a piece
 //! √(|c′|²|c″|² − (c′·c″)²) / |c′|³, at nine places. Corners, where the tangent turns, have none and are counted.
@@ -83,30 +83,33 @@ pub fn compare(points: &[Position], pieces: &[Bezier]) -> Likeness {
     likeness
 }
 
-/// The place of the spline nearest to `point` from a place on, `way` mm farther or so, and its distance.
+/// The place of the spline nearest to `point` about a known place, or `way` mm farther, and its distance. The piece before is
+/// looked at too, since noise may lead points back, and the piece behind, which may go back beside this one.
 fn next_place(pieces: &[Bezier], (at, t): (usize, f64), point: &Position, way: f64) -> (usize, f64, f64) {
-    let mut best = (at, t, distance(&pieces[at].eval(t), point));
-    let mut from = t;
+    let mut best = (at, t, f64::INFINITY);
     // Two pieces in a row that are no nearer end the search.
     let mut worse = 0;
-    for (i, piece) in pieces.iter().enumerate().skip(at) {
+    for (i, piece) in pieces.iter().enumerate().skip(at.saturating_sub(1)) {
         let polygon: f64 =
             piece.control_points().windows(2).map(|pair| distance(&pair[0], &pair[1])).sum::<f64>();
-        let guesses = [from, (from + way / polygon.max(f64::MIN_POSITIVE)).min(1.0)];
+        let guesses = match i.cmp(&at) {
+            std::cmp::Ordering::Less => [1.0, 1.0],
+            std::cmp::Ordering::Equal => [t, (t + way / polygon.max(f64::MIN_POSITIVE)).min(1.0)],
+            std::cmp::Ordering::Greater => [0.0, 0.5],
+        };
         let mut nearer = false;
         for guess in guesses {
-            let t = foot(piece, point, guess, from, 1.0);
+            let t = foot(piece, point, guess, 0.0, 1.0);
             let off = distance(&piece.eval(t), point);
-            if off < best.2 || (off == best.2 && t < 1.0) {
+            if off < best.2 {
                 best = (i, t, off);
                 nearer = true;
             }
         }
-        worse = if nearer || i == at { 0 } else { worse + 1 };
-        if 1 < worse || (best.0 == i && best.1 < 1.0) {
+        worse = if nearer || i <= at { 0 } else { worse + 1 };
+        if 1 < worse || (at < i && best.0 <= i && best.1 < 1.0) {
             break;
         }
-        from = 0.0;
     }
     best
 }

@@ -9,8 +9,8 @@
 //!    that the spline has no room to swing beside it.
 //! 3. **One curve.** Splines are put together with triple knots at the corners.
 //!
-//! Where halving a span would leave it fewer than `LEAST` points the run is broken at its farthest point. How far the result is from the polyline
-//! is proved on the text that is read back.
+//! Where halving a span would leave it fewer than `LEAST` points the run is broken at its farthest point. How far the result is
+//! from the polyline is proved on the text that is read back.
 
 mod corners;
 mod squares;
@@ -33,14 +33,17 @@ pub struct Fitting {
 /// of radius R turns by 8 δ/R, so that arcs of more than 18 tolerances are no corners.
 pub const CORNER: f64 = 25.0;
 
-/// A span is not halved below so many points.
-const LEAST: usize = 4;
+/// A span is not halved below so many points, so that there are more of them than control points.
+const LEAST: usize = 2;
+
+/// Fewer points than this are no run.
+const RUN: usize = 5;
 
 /// A line longer than so many middling ones gets points of its own.
 const LONG: f64 = 8.0;
 
 /// A point's parameter moves on only where the spline is within so many tolerances of it: farther off, its foot is anywhere.
-const GRASP: f64 = 16.0;
+const GRASP: f64 = 4.0;
 
 /// A run that no spline follows is broken at its farthest points at most so often, one part within another.
 const DEPTH: usize = 8;
@@ -61,7 +64,7 @@ fn distance(a: &Position, b: &Position) -> f64 {
 /// A B-spline through the first and the last point and within the tolerance of all; none where it would save nothing.
 pub fn spline(points: &[Position], fitting: Fitting) -> Option<Nurbs> {
     let Fitting { tolerance, corner } = fitting;
-    if points.len() < LEAST + 1 {
+    if points.len() < RUN {
         return None;
     }
     let corners = corners::of(points, tolerance, corner);

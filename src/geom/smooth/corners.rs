@@ -20,21 +20,26 @@ const ABOUT: usize = 16;
 pub(super) fn of(points: &[Position], tolerance: f64, corner: f64) -> Vec<usize> {
     let kept = simplified(points, tolerance);
     let least = cos(corner / DEGREES);
+    let reach = REACH * tolerance;
     let mut corners = vec![0];
-    for triple in kept.windows(3) {
-        let [a, b, c] = [0, 1, 2].map(|k| points[triple[k]]);
-        let (before, after) = (distance(&a, &b), distance(&b, &c));
-        if before.min(after) < REACH * tolerance {
+    for k in 1..kept.len() - 1 {
+        let at = kept[k];
+        let b = points[at];
+        let away = |i: &usize| reach <= distance(&points[*i], &b);
+        // Two vertices of the simplified path may stand for one corner: the next ones are those beyond reach.
+        let before = kept[..k].iter().copied().rev().find(away);
+        let after = kept[k + 1..].iter().copied().find(away);
+        let (Some(before), Some(after)) = (before, after) else { continue };
+        let near =
+            [(before..at).rev().find(away).unwrap_or(before), (at + 1..after).find(away).unwrap_or(after)];
+        let turns = |[i, j]: [usize; 2]| cosine(&points[i], &b, &points[j]) < least;
+        if !(turns([before, after]) && turns(near)) {
             continue;
         }
-        let reach = REACH * tolerance;
-        let away = |i: &usize| reach <= distance(&points[*i], &b);
-        let near = [
-            (triple[0]..triple[1]).rev().find(away).unwrap_or(triple[0]),
-            (triple[1] + 1..triple[2]).find(away).unwrap_or(triple[2]),
-        ];
-        if cosine(&a, &b, &c) < least && cosine(&points[near[0]], &b, &points[near[1]]) < least {
-            corners.push(sharpest(points, near, triple[1]));
+        let corner = sharpest(points, near, at);
+        let last = corners[corners.len() - 1];
+        if last < corner && (corners.len() == 1 || reach <= distance(&points[last], &points[corner])) {
+            corners.push(corner);
         }
     }
     corners.push(points.len() - 1);
