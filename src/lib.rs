@@ -248,7 +248,8 @@ impl Attempt<'_> {
         let no_verify = self.options.no_verify;
         let form = self.motion.form;
         let splines = matches!(form, Form::Polynomial { .. } | Form::Nurbs);
-        let fitted = (self.options.fit && splines).then(|| pass::fit::fit(intent, machine, fitting(fit, self.options)));
+        let fitted = (self.options.fit && splines)
+            .then(|| pass::fit::fit(intent, machine, fitting(fit, self.options)));
         let source = fitted.as_ref().unwrap_or(intent);
         let program = pass::interpolate::interpolate(source, form, machine, (fit, tolerance), exact)?;
         let mut program = pass::convert::convert(program, form, machine, self.asked)?;

@@ -21,8 +21,8 @@ pub fn choose(
     tolerance: f64,
 ) -> Result<Warned<&'static Motion>, Diagnostics> {
     let mut warnings = Diagnostics::new();
-    // Where nothing is left to choose, a million points are not counted.
     let source = fitted.unwrap_or(intent);
+    // Where nothing is left to choose, a million points are not counted.
     if paths(source).next().is_none()
         && let Some(motion) = machine.dialect.motion_of(Form::Lines)
     {

@@ -23,20 +23,22 @@ pub(super) fn of(points: &[Position], tolerance: f64, corner: f64) -> Vec<usize>
     let reach = REACH * tolerance;
     let mut corners = vec![0];
     for k in 1..kept.len() - 1 {
-        let at = kept[k];
-        let b = points[at];
-        let away = |i: &usize| reach <= distance(&points[*i], &b);
+        let away = |from: usize| move |i: &usize| reach <= distance(&points[*i], &points[from]);
         // Two vertices of the simplified path may stand for one corner: the next ones are those beyond reach.
-        let before = kept[..k].iter().copied().rev().find(away);
-        let after = kept[k + 1..].iter().copied().find(away);
+        let at = kept[k];
+        let before = kept[..k].iter().copied().rev().find(away(at));
+        let after = kept[k + 1..].iter().copied().find(away(at));
         let (Some(before), Some(after)) = (before, after) else { continue };
-        let near =
-            [(before..at).rev().find(away).unwrap_or(before), (at + 1..after).find(away).unwrap_or(after)];
-        let turns = |[i, j]: [usize; 2]| cosine(&points[i], &b, &points[j]) < least;
-        if !(turns([before, after]) && turns(near)) {
+        let near = |at: usize| {
+            let back = (before..at).rev().find(away(at)).unwrap_or(before);
+            [back, (at + 1..after).find(away(at)).unwrap_or(after)]
+        };
+        // A vertex may stand beside its corner, which is looked for first.
+        let corner = sharpest(points, near(at), at);
+        let turns = |[i, j]: [usize; 2]| cosine(&points[i], &points[corner], &points[j]) < least;
+        if !(turns([before, after]) && turns(near(corner))) {
             continue;
         }
-        let corner = sharpest(points, near, at);
         let last = corners[corners.len() - 1];
         if last < corner && (corners.len() == 1 || reach <= distance(&points[last], &points[corner])) {
             corners.push(corner);
