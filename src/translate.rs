@@ -30,7 +30,8 @@ use crate::verify::{to_arc, to_nurbs};
 /// What a program for `machine` asks for.
 ///
 /// # Errors
-/// It turns an axis at a feed that cannot be told, has a spline that is none, or an operator's parameters.
+/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
+/// parameters.
 pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
     let Warned { value: reading, mut warnings } = reading;
     let decimals = &reading.decimals;
@@ -41,6 +42,17 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
             Diagnostic::warning("header-differs", message)
                 .hint("what other lines set is not asked of the other machine"),
         );
+    }
+    let end = steps.last().map_or(Span::new(SourceId::INPUT, 0..0), |located| located.span);
+    if !steps.iter().any(|located| matches!(located.step, Step::Rapid(_) | Step::Cut(_))) {
+        return Err(Diagnostic::error("moves-missing", "the program has no move").at(end, "").into());
+    }
+    if !reading.footer {
+        let message = format!("the program does not end with the lines of machine `{}`", machine.name);
+        return Err(Diagnostic::error("footer-differs", message)
+            .at(end, "the last that was read")
+            .hint("it may have been cut off")
+            .into());
     }
     let used = used_axes(decimals);
     let kept: Vec<usize> = (0..decimals.program.axes.count()).filter(|i| used[*i]).collect();
