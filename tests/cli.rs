@@ -311,17 +311,10 @@ fn a_program_for_one_machine_becomes_one_for_another() {
     assert_eq!(code(&second), 0, "{}", stderr(&second));
     assert!(stderr(&second).contains("proved"));
     let text = fs::read_to_string(within.join("a.mpf")).expect("a program");
+    let head = |lines: usize| text.split_inclusive('\n').take(lines).collect::<String>();
     for (name, damaged, id) in [
-        (
-            "cut.mpf",
-            text.lines().take(22).map(|line| format!("{line}\n")).collect::<String>(),
-            "footer-differs",
-        ),
-        (
-            "head.mpf",
-            text.lines().take(4).map(|line| format!("{line}\n")).collect::<String>(),
-            "moves-missing",
-        ),
+        ("cut.mpf", head(22), "footer-differs"),
+        ("head.mpf", head(4), "moves-missing"),
         ("word.mpf", text.replace("BSPLINE", "BSPLNE"), "word-unknown"),
     ] {
         fs::write(within.join(name), damaged).expect("written");

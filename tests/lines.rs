@@ -5,6 +5,7 @@ use splinepost::diagnostic::Diagnostics;
 use splinepost::dialect::{DIALECTS, Form};
 use splinepost::verify::Status;
 use splinepost::{Options, Output, compile, front};
+use std::fmt::Write as _;
 
 /// A job of one run in X, Y and Z.
 fn job(points: &[[f64; 3]]) -> String {
@@ -134,7 +135,8 @@ fn cl_data(points: &[[f64; 3]]) -> String {
         points[0][0], points[0][1], points[0][2]
     );
     for point in &points[1..] {
-        text.push_str(&format!("GOTO/{:.5},{:.5},{:.5}\n", point[0], point[1], point[2]));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "GOTO/{:.5},{:.5},{:.5}", point[0], point[1], point[2]);
     }
     text.push_str("FINI\n");
     text
@@ -299,7 +301,9 @@ fn splines_do_not_wave_at_ends_or_corners() {
     for (tolerance, noise) in [(0.01, 0.0), (0.001, 0.0), (0.01, 0.0035), (0.001, 0.00035)] {
         let mut random = random();
         let mut own = points.clone();
-        own.iter_mut().for_each(|p| *p = place(p[0] + noise * random(), p[1] + noise * random()));
+        for p in &mut own {
+            *p = place(p[0] + noise * random(), p[1] + noise * random());
+        }
         let fitted = spline(&own, Fitting { tolerance, corner: CORNER }).expect("a spline");
         // Signed curvature along the spline: lines have none, arcs 0.2. That of a C2 cubic is continuous and about linear in
         // each span, and swings beside a step by no more than 2 − √3 of it, the ratio in which what a knot does to the
