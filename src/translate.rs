@@ -12,7 +12,8 @@
 //! | the lines and remarks round the program | nothing: they are the other machine's affair |
 //!
 //! Axes that the program never moves are left out, X, Y and Z excepted. F is taken as the speed along the linear axes; where
-//! the machine counts rotary axes in it, a program that turns one is refused.
+//! the machine counts rotary axes in it, a program that turns one is refused. So is one that leads the tool's tip: its reader
+//! needs the input to know the tool's direction.
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};

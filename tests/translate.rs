@@ -84,6 +84,11 @@ fn every_golden_program_of_cl_data_can_be_asked_of_every_machine() {
         let sources = Sources::new(Source::new("input.cl", text.as_str()));
         for from in [&sinumerik, &heidenhain, &mazak] {
             let Ok(asked) = compile(&sources, language, from, &Options::default()) else { continue };
+            // Without its input nobody knows that a program leads the tip: its directions are words of nothing.
+            if asked.intent.program.axes.direction().is_some() {
+                assert!(program(&asked.text, from, &sinumerik, None).is_err(), "{name}: {}", from.name);
+                continue;
+            }
             for to in [&sinumerik, &heidenhain, &mazak] {
                 let output = match program(&asked.text, from, to, None) {
                     Ok(output) => output,
