@@ -165,8 +165,26 @@ pub enum Role {
     Path,
     /// It brings the tool to the work or away.
     Approach,
-    /// It shapes the work in the form that was asked for: lines stay lines.
+    /// It shapes the work in the form that was asked for: lines stay lines, unless they are to become splines.
     AsAsked,
+}
+
+impl Cut<f64, Curve> {
+    /// Whether the motion is used here: on every path, and on splines that were made of lines as asked.
+    pub fn takes_motion(&self) -> bool {
+        match (self.role, &self.curve) {
+            (Role::Path, _) => true,
+            (Role::Approach, _) | (Role::AsAsked, Curve::Lines(_) | Curve::Arc(_)) => false,
+            (
+                Role::AsAsked,
+                Curve::Polynomial(_)
+                | Curve::Nurbs(_)
+                | Curve::Through(..)
+                | Curve::Logarithmic(_)
+                | Curve::Formula(_),
+            ) => true,
+        }
+    }
 }
 
 /// What was asked: a program, and how exactly.

@@ -25,6 +25,7 @@
 //! | [`geom`] | curves, fits, and the bounds that are the proof |
 //! | [`machine`], [`tables`] | machine files |
 //! | [`front`] | what a user writes |
+//! | [`translate`] | NC programs as inputs |
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
@@ -51,12 +52,14 @@ pub mod simulate;
 pub mod source;
 pub mod summary;
 pub mod tables;
+pub mod translate;
 pub mod units;
 pub mod verify;
 
 use diagnostic::{Diagnostic, Diagnostics};
 use dialect::{Form, Motion};
 use front::Language;
+use geom::smooth::{self, Fitting};
 use ir::{Curve, Cut, Intent, Located, Method, Step, Written};
 use machine::Machine;
 use setup::Setup;
@@ -76,6 +79,8 @@ pub struct Options {
     pub no_verify: bool,
     /// Make splines of runs of short lines.
     pub fit: bool,
+    /// Where such a run turns by more, it has a corner, degrees; none: [`smooth::CORNER`].
+    pub corner: Option<f64>,
 }
 
 /// A program and its proof.
@@ -122,7 +127,24 @@ pub fn compile(
     machine: &Machine,
     options: &Options,
 ) -> Result<Output, Failure> {
-    let intent = with_options((language.parse)(sources)?, options);
+    compile_intent((language.parse)(sources)?, machine, options)
+}
+
+/// Compiles an NC program that was written for the machine `from` for another one, and proves it against that program.
+///
+/// # Errors
+/// As [`compile`]; and where the program cannot be read, or asks for what only its own machine knows.
+pub fn recompile(
+    sources: &Sources,
+    from: &Machine,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Output, Failure> {
+    compile_intent(translate::parse(sources, from)?, machine, options)
+}
+
+fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
+    let intent = with_options(intent, options);
     let intent = pass::place::place(intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
     if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {
@@ -139,7 +161,7 @@ pub fn compile(
     let motion = match asked {
         Some(motion) => motion,
         None => {
-            let fitted = options.fit.then(|| pass::fit::fit(&intent, &machine, FIT_SHARE * tolerance));
+            let fitted = options.fit.then(|| pass::fit::fit(&intent, &machine, fitting(tolerance, options)));
             let chosen = pass::choose::choose(&intent, fitted.as_ref(), &machine, tolerance)?;
             warnings.extend(chosen.warnings);
             chosen.value
@@ -170,6 +192,9 @@ pub fn compile(
                 warnings.extend(pass::stretch::varying(&intent, &machine));
                 warnings.extend(pass::approximate::notes(&intent, motion.form, &machine, !attempt.exact));
                 if let Some(report) = &report {
+                    if options.fit && report.splined.is_none() {
+                        warnings.push(nothing_splined(motion));
+                    }
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
                 }
                 return Ok(Output { text, report, motion, intent, tolerance, setup, warnings });
@@ -212,13 +237,19 @@ struct Attempt<'a> {
 /// The share of the tolerance that splines through points may take: the way between the points takes some too.
 const FIT_SHARE: f64 = 0.8;
 
+/// How runs of lines become splines within `tolerance` mm.
+fn fitting(tolerance: f64, options: &Options) -> Fitting {
+    Fitting { tolerance: FIT_SHARE * tolerance, corner: options.corner.unwrap_or(smooth::CORNER) }
+}
+
 impl Attempt<'_> {
     fn run(&self, intent: &Intent) -> Result<Attempted, Failure> {
         let Attempt { machine, tolerance, fit, exact, .. } = *self;
         let no_verify = self.options.no_verify;
         let form = self.motion.form;
         let splines = matches!(form, Form::Polynomial { .. } | Form::Nurbs);
-        let fitted = (self.options.fit && splines).then(|| pass::fit::fit(intent, machine, FIT_SHARE * fit));
+        let fitted = (self.options.fit && splines)
+            .then(|| pass::fit::fit(intent, machine, fitting(fit, self.options)));
         let source = fitted.as_ref().unwrap_or(intent);
         let program = pass::interpolate::interpolate(source, form, machine, (fit, tolerance), exact)?;
         let mut program = pass::convert::convert(program, form, machine, self.asked)?;
@@ -243,6 +274,20 @@ impl Attempt<'_> {
             }
         }
     }
+}
+
+/// What is said where splines were to be made of lines, and none was.
+fn nothing_splined(motion: &Motion) -> Diagnostic {
+    let (name, lines) = (motion.name, "lines stay lines");
+    let message = match motion.form {
+        Form::Polynomial { .. } | Form::Nurbs => {
+            format!("{lines}: no run is long enough for a spline to save blocks")
+        }
+        Form::Lines | Form::Through(_) => {
+            format!("{lines}: the motion is `{name}`, where no spline saves blocks")
+        }
+    };
+    Diagnostic::note("nothing-fitted", message)
 }
 
 /// Reads a program and compares it with a settled intent.

@@ -55,7 +55,10 @@ pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sou
         name(input.map_or("", |source| source.name.as_str()))
     );
     let mut first = true;
-    for (located, count) in intent.program.steps.iter().zip(&report.blocks) {
+    let splined = |step: usize| {
+        report.splined.as_ref().is_some_and(|splined| splined.steps.binary_search(&step).is_ok())
+    };
+    for (step, (located, count)) in intent.program.steps.iter().zip(&report.blocks).enumerate() {
         let count = *count as usize;
         let (from, file) = known.entry(located.span.source).or_insert_with(|| {
             let source = sources.get(located.span.source);
@@ -67,6 +70,13 @@ pub fn json(intent: &Intent, report: &Report, reading: &Reading, text: &str, sou
         for k in 0..count {
             let Some(block) = blocks.get(at + k) else { break };
             let from = match &located.step {
+                // Every block of a spline stands for its whole run.
+                Step::Cut(Cut { curve: Curve::Lines(line), .. }) if splined(step) => {
+                    match (line.lines.first(), line.lines.last()) {
+                        (Some(first), Some(last)) => [*first, *last],
+                        (None, _) | (_, None) => whole,
+                    }
+                }
                 Step::Cut(Cut { curve: Curve::Lines(line), .. }) => {
                     line.lines.get(k).map_or(whole, |line| [*line, *line])
                 }

@@ -171,7 +171,7 @@ impl Setup {
         if !self.needs.is_empty() {
             lines.push(format!("NEEDS: {}", self.needs.join(", ").to_uppercase()));
         }
-        lines.push(format!("NOT PROVED: {}", self.not_covered.join(", ").to_uppercase()));
+        lines.push(format!("{LAST_REMARK} {}", self.not_covered.join(", ").to_uppercase()));
         lines
     }
 }
@@ -195,6 +195,9 @@ fn amount(curve: &Curve, axes: &Axes) -> f64 {
         }
     }
 }
+
+/// How the last of the remarks that say what to set up begins.
+pub const LAST_REMARK: &str = "NOT PROVED:";
 
 /// A remark in lines of the length that the machine file allows, cut between words.
 pub fn wrapped(text: &str, machine: &Machine) -> Vec<String> {

@@ -233,5 +233,6 @@ fn instead(pieces: &[Piece<Shape>], tolerance: f64) -> Option<usize> {
         points.push(scaled(from));
     }
     points.extend(pieces.last().map(|piece| scaled(piece.curve.at(piece.to))));
-    smooth::spline(&points, tolerance).map(|spline| spline.beziers().count())
+    smooth::spline(&points, smooth::Fitting { tolerance, corner: smooth::CORNER })
+        .map(|spline| spline.beziers().count())
 }

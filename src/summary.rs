@@ -5,7 +5,7 @@ use crate::ir::{Intent, Step};
 use crate::machine::Machine;
 use crate::setup::Setup;
 use crate::units::DEGREES;
-use crate::verify::Report;
+use crate::verify::{Report, Splined};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -39,6 +39,8 @@ pub struct Summary {
     pub deviation_mm: Option<f64>,
     /// The greatest deviation in a rotary axis or of the tool axis, radians.
     pub deviation_rad: Option<f64>,
+    /// Runs of lines that became splines.
+    pub fit: Option<FitFigures>,
     /// Where lines follow odd-even steps: the steps' distance from the ideal curve, mm.
     pub steps_from_ideal_mm: Option<f64>,
     /// The same in A, radians.
@@ -49,6 +51,42 @@ pub struct Summary {
     pub setup: Setup,
     /// What to know.
     pub notes: Vec<String>,
+}
+
+/// The figures of runs of lines that became splines.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitFigures {
+    /// How many runs.
+    pub runs: usize,
+    /// How many lines they had.
+    pub lines: usize,
+    /// How many blocks they have.
+    pub blocks: usize,
+    /// How many corners were kept.
+    pub corners: usize,
+    /// The greatest distance of a spline from its lines, proved, mm.
+    pub spline_from_lines_mm: f64,
+    /// The greatest distance of a point from its spline, proved, mm.
+    pub points_from_spline_mm: f64,
+    /// The greatest curvature of the points, by the circle through three, corners left out, 1/mm.
+    pub curvature_before: f64,
+    /// The greatest curvature of the splines, at nine places of each block, 1/mm.
+    pub curvature_after: f64,
+}
+
+impl From<&Splined> for FitFigures {
+    fn from(splined: &Splined) -> FitFigures {
+        FitFigures {
+            runs: splined.steps.len(),
+            lines: splined.lines,
+            blocks: splined.blocks,
+            corners: splined.corners,
+            spline_from_lines_mm: splined.from_lines,
+            points_from_spline_mm: splined.from_points,
+            curvature_before: splined.curvature_before,
+            curvature_after: splined.curvature_after,
+        }
+    }
 }
 
 /// The figures of a conical cutter.
@@ -125,6 +163,7 @@ impl Summary {
             map: report.and_then(|r| r.map).map(Map::words),
             deviation_mm: report.map(|r| r.deviation.mm),
             deviation_rad: report.map(|r| r.deviation.rad),
+            fit: report.and_then(|r| r.splined.as_ref()).map(FitFigures::from),
             steps_from_ideal_mm: report.and_then(|r| r.from_ideal).map(|b| b.mm),
             steps_from_ideal_rad: report.and_then(|r| r.from_ideal).map(|b| b.rad),
             cutter: CutterFigures::of(intent),
@@ -199,6 +238,27 @@ impl Summary {
             _ => {
                 let _ = writeln!(text, "  deviation  {}", self.status);
             }
+        }
+        if let Some(fit) = &self.fit {
+            let (runs, corners) = (fit.runs, fit.corners);
+            let _ = writeln!(
+                text,
+                "  fit        {runs} run{} of {} lines in {} blocks, {corners} corner{} kept",
+                plural(runs),
+                fit.lines,
+                fit.blocks,
+                plural(corners)
+            );
+            let _ = writeln!(
+                text,
+                "             splines within {:.2e} mm of the lines, points within {:.2e} mm of the splines",
+                fit.spline_from_lines_mm, fit.points_from_spline_mm
+            );
+            let _ = writeln!(
+                text,
+                "             curvature at most {:.3e}/mm before, {:.3e}/mm after",
+                fit.curvature_before, fit.curvature_after
+            );
         }
         if let (Some(mm), Some(rad)) = (self.steps_from_ideal_mm, self.steps_from_ideal_rad) {
             let dl =

@@ -23,6 +23,7 @@ mod curve;
 mod form;
 mod lines;
 mod logarithmic;
+mod splined;
 
 pub use arcs::to_arc;
 
@@ -43,6 +44,7 @@ use crate::source::{SourceId, Span};
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 
 pub use form::same_form;
+pub use splined::Splined;
 
 /// How sure the deviation is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -78,6 +80,8 @@ pub struct Report {
     pub path_blocks: usize,
     /// How many blocks each step of the intent became; a remark none.
     pub blocks: Vec<u32>,
+    /// Runs of lines that were written as splines; none where there are none.
+    pub splined: Option<Splined>,
     /// The paths' length, mm.
     pub cutting_length: f64,
     /// How long the paths take at their F, minutes: without approaches, rapids and acceleration.
@@ -111,6 +115,7 @@ pub fn verify(
         map: None,
         path_blocks: 0,
         blocks: Vec::with_capacity(intent.program.steps.len()),
+        splined: None,
         cutting_length: 0.0,
         minutes: 0.0,
         feed_error: 0.0,
@@ -221,6 +226,10 @@ pub fn verify(
                     });
                 }
                 report.deviation = report.deviation.max(found.deviation);
+                if let Some(run) = found.splined {
+                    let all = report.splined.get_or_insert_default();
+                    all.add(report.blocks.len().saturating_sub(1), &run);
+                }
                 report.status = report.status.max(found.status);
                 if let Some(last) = report.blocks.last_mut() {
                     *last = u32::try_from(found.path_blocks).unwrap_or(u32::MAX);
@@ -305,6 +314,7 @@ struct Found {
     cutting_length: f64,
     minutes: f64,
     feed_error: f64,
+    splined: Option<splined::Run>,
 }
 
 impl Found {
@@ -317,6 +327,7 @@ impl Found {
             cutting_length: 0.0,
             minutes: 0.0,
             feed_error: 0.0,
+            splined: None,
         }
     }
 }

@@ -298,3 +298,33 @@ fn cl_data_goes_the_same_way() {
         assert!(output.stdout.is_empty());
     }
 }
+
+#[test]
+fn a_program_for_one_machine_becomes_one_for_another() {
+    let temporary = tempfile::tempdir().expect("a folder");
+    let within = temporary.path();
+    let circle = folder("fixtures/compile/circle/input.toml").display().to_string();
+    let run = |arguments: &[&str]| splinepost(arguments, within);
+    let first = run(&["compile", &circle, "--to", "sinumerik", "--motion", "bspline", "-o", "a.mpf"]);
+    assert_eq!(code(&first), 0, "{}", stderr(&first));
+    let second = run(&["compile", "a.mpf", "--from", "sinumerik", "--to", "mazak", "-o", "b.eia"]);
+    assert_eq!(code(&second), 0, "{}", stderr(&second));
+    assert!(stderr(&second).contains("proved"));
+    let text = fs::read_to_string(within.join("a.mpf")).expect("a program");
+    let head = |lines: usize| text.split_inclusive('\n').take(lines).collect::<String>();
+    for (name, damaged, id) in [
+        ("cut.mpf", head(22), "footer-differs"),
+        ("head.mpf", head(4), "moves-missing"),
+        ("word.mpf", text.replace("BSPLINE", "BSPLNE"), "word-unknown"),
+    ] {
+        fs::write(within.join(name), damaged).expect("written");
+        let output = run(&["compile", name, "--from", "sinumerik", "--to", "mazak", "-o", "none.eia"]);
+        assert_eq!(code(&output), 2, "{name}: {}", stderr(&output));
+        assert!(stderr(&output).contains(id) && stderr(&output).contains(name), "{}", stderr(&output));
+        assert!(!within.join("none.eia").exists());
+    }
+    for wrong in [&["--from", "nonsense"][..], &["--corner", "30"], &["--fit", "--corner", "180"]] {
+        let output = run(&[&["compile", "a.mpf", "--to", "mazak"], wrong].concat());
+        assert_eq!(code(&output), 2, "{wrong:?}: {}", stderr(&output));
+    }
+}

@@ -45,3 +45,4 @@ mod schema;
 mod simulate;
 mod support;
 mod tidy;
+mod translate;

@@ -4,6 +4,7 @@ use super::io::{self, Console};
 use super::{MethodName, machine, motion, tolerance};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::front::{self, Language};
+use splinepost::machine::Machine;
 use splinepost::source::{Encoding, Source, SourceId, Sources};
 use splinepost::summary::Summary;
 use splinepost::{Options, diagnostic::Diagnostic};
@@ -28,8 +29,8 @@ pub(crate) struct Compile {
     /// Tolerance in mm, instead of the input's or the machine's
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
-    /// The input's language, where it cannot be told from its text
-    #[arg(long, value_name = "LANGUAGE")]
+    /// The input's language, where it cannot be told from its text; or the machine that it is an NC program for
+    #[arg(long, value_name = "LANGUAGE|MACHINE")]
     from: Option<String>,
     /// Write to this file which lines of the input each block came from (JSON)
     #[arg(long, value_name = "FILE", conflicts_with = "no_verify")]
@@ -39,6 +40,9 @@ pub(crate) struct Compile {
     /// Make splines of runs of short lines, within the tolerance of them and with their corners
     #[arg(long)]
     fit: bool,
+    /// With --fit: a turn by more degrees than this is a corner, and kept [default: 25]
+    #[arg(long, value_name = "DEGREES", requires = "fit", value_parser = corner)]
+    corner: Option<f64>,
     /// Write the program without its proof, and say so in it
     #[arg(long)]
     no_verify: bool,
@@ -50,7 +54,11 @@ impl Compile {
         *sources = Sources::new(io::read_input(&self.input)?);
         self.reading.tell(sources)?;
         let machine = machine(&self.to, sources)?;
-        let language = language(self.from.as_deref(), sources)?;
+        let written_for = self.machine_of_input(sources)?;
+        let known = match written_for {
+            Some(_) => None,
+            None => Some(language(self.from.as_deref(), sources)?),
+        };
         if let Some(output) = &self.output
             && (io::is_read(output, sources) || io::same_file(output, &self.to))
         {
@@ -63,13 +71,19 @@ impl Compile {
             tolerance: self.tolerance,
             no_verify: self.no_verify,
             fit: self.fit,
+            corner: self.corner,
         };
         // `--motion auto` overrules the machine's own choice.
         let mut machine = machine;
         if self.motion.as_deref() == Some("auto") {
             machine.motion = None;
         }
-        let output = splinepost::compile(sources, language, &machine, &options).map_err(|failure| {
+        let compiled = match (&written_for, known) {
+            (Some(from), _) => splinepost::recompile(sources, from, &machine, &options),
+            (None, Some(language)) => splinepost::compile(sources, language, &machine, &options),
+            (None, None) => Err(Diagnostics::new().into()),
+        };
+        let output = compiled.map_err(|failure| {
             sources.program = failure.program;
             failure.diagnostics
         })?;
@@ -97,6 +111,29 @@ impl Compile {
     }
 }
 
+impl Compile {
+    /// The machine that the input is an NC program for, where `--from` names one.
+    fn machine_of_input(&self, sources: &mut Sources) -> Result<Option<Machine>, Diagnostics> {
+        match &self.from {
+            Some(name) if front::find(name).is_none() && is_machine(name) => machine(name, sources).map(Some),
+            Some(_) | None => Ok(None),
+        }
+    }
+}
+
+/// Whether a name is that of a built-in machine, or of a file.
+fn is_machine(name: &str) -> bool {
+    Machine::built_in(name).is_some() || std::path::Path::new(name).is_file()
+}
+
+/// The angle of a corner must be one.
+fn corner(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if 0.0 < x && x < 180.0 => Ok(x),
+        _ => Err("an angle above 0 and below 180 degrees is needed".to_owned()),
+    }
+}
+
 /// The language that `--from` names, or that the input looks like; one that does not read Windows-1252 refuses it.
 /// The files that the input names are loaded, so that a message about them can point into the input.
 pub(super) fn language(from: Option<&str>, sources: &mut Sources) -> Result<&'static Language, Diagnostics> {
@@ -111,8 +148,10 @@ fn language_of(from: Option<&str>, sources: &Sources) -> Result<&'static Languag
     let language = match from {
         Some(name) => front::find(name).ok_or_else(|| {
             let names: Vec<&str> = front::LANGUAGES.iter().map(|language| language.name).collect();
-            Diagnostic::error("language-unknown", format!("`{name}` is not a language"))
-                .hint(format!("known are {}", names.join(", ")))
+            Diagnostic::error("language-unknown", format!("`{name}` is not a language")).hint(format!(
+                "known are {}; `compile` takes a machine too, whose NC program the input is",
+                names.join(", ")
+            ))
         })?,
         None => front::detect(input)?,
     };

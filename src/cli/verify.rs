@@ -42,13 +42,8 @@ impl Verify {
         let id = sources.push(program);
         let machine = machine(&self.to, sources)?;
         let language = language(self.from.as_deref(), sources)?;
-        let options = Options {
-            motion: None,
-            method: self.method.map(Into::into),
-            tolerance: self.tolerance,
-            no_verify: false,
-            fit: false,
-        };
+        let options =
+            Options { method: self.method.map(Into::into), tolerance: self.tolerance, ..Options::default() };
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);
         let report = Some(&verified.report);

@@ -36,7 +36,7 @@ fn leaves(piece: &Bezier) -> Option<Position> {
 impl Chain {
     /// The curve of these pieces, those without length left out; none where nothing is left.
     pub fn new(pieces: &[Bezier]) -> Option<Chain> {
-        let mut pieces = tamed(pieces);
+        let mut pieces = tamed(pieces).into_owned();
         pieces.retain(|piece| leaves(piece).is_some());
         (!pieces.is_empty()).then_some(Chain { pieces })
     }

@@ -40,6 +40,7 @@ use super::bezier::Bezier;
 use super::deviation::OrderError;
 use super::direction;
 use crate::units::{MAX_AXES, Position};
+use std::borrow::Cow;
 
 /// Allowance for rounding, relative to the greatest coordinate.
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
@@ -163,12 +164,15 @@ const TAME: f64 = 3.0;
 
 /// The same path, its pieces halved where weights differ much: there most of the way is run in a small part of the
 /// parameter, and nearest places are hard to find.
-pub(super) fn tamed(pieces: &[Bezier]) -> Vec<Bezier> {
+pub(super) fn tamed(pieces: &[Bezier]) -> Cow<'_, [Bezier]> {
     let wild = |piece: &Bezier| {
         let weights = &piece.weights[..=piece.degree];
         let greatest = weights.iter().copied().fold(0.0, f64::max);
         weights.iter().any(|w| w * TAME < greatest)
     };
+    if !pieces.iter().any(wild) {
+        return Cow::Borrowed(pieces);
+    }
     let mut tame = Vec::with_capacity(pieces.len());
     for piece in pieces {
         let mut stack = vec![(*piece, 0)];
@@ -181,7 +185,7 @@ pub(super) fn tamed(pieces: &[Bezier]) -> Vec<Bezier> {
             stack.push((piece.segment(0.0, 0.5), depth + 1));
         }
     }
-    tame
+    Cow::Owned(tame)
 }
 
 /// The greatest bounds so far.

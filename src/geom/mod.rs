@@ -18,6 +18,7 @@
 //! | [`chain`] | a curve of many pieces as one function |
 //! | [`geometric`] | few pieces within a tolerance of any curve |
 //! | [`smooth`] | runs of points to splines, corners kept |
+//! | [`runs`] | such a run beside its spline: distances, curvature, corners |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
 //! | [`follow`] | the same for any two paths of pieces |
 
@@ -36,4 +37,5 @@ pub mod knots;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;
+pub mod runs;
 pub mod smooth;

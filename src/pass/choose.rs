@@ -21,14 +21,14 @@ pub fn choose(
     tolerance: f64,
 ) -> Result<Warned<&'static Motion>, Diagnostics> {
     let mut warnings = Diagnostics::new();
+    let source = fitted.unwrap_or(intent);
     // Where nothing is left to choose, a million points are not counted.
-    if paths(intent).next().is_none()
+    if paths(source).next().is_none()
         && let Some(motion) = machine.dialect.motion_of(Form::Lines)
     {
         return Ok(Warned { value: motion, warnings });
     }
-    let blocked = machine.axes_without_spline(&moving_axes(intent));
-    let source = fitted.unwrap_or(intent);
+    let blocked = machine.axes_without_spline(&moving_axes(source));
     let straight = paths(source).all(|curve| match curve {
         Curve::Logarithmic(log) => log.method == Method::OddEven || log.curve.is_straight(),
         Curve::Lines(_) | Curve::Arc(_) => true,
@@ -92,11 +92,11 @@ pub fn choose(
 
 fn paths(intent: &Intent) -> impl Iterator<Item = &Curve> {
     let cuts = intent.program.steps.iter().filter_map(|located| located.step.cut());
-    cuts.filter(|cut| cut.role == Role::Path).map(|cut| &cut.curve)
+    cuts.filter(|cut| cut.takes_motion()).map(|cut| &cut.curve)
 }
 
 /// The axes that paths move.
-pub fn moving_axes(intent: &Intent) -> Vec<Axis> {
+fn moving_axes(intent: &Intent) -> Vec<Axis> {
     let axes = &intent.program.axes;
     let moves = |i: usize| {
         paths(intent).any(|curve| match curve {
@@ -138,10 +138,10 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
     Ok(counted + count(&convert::convert(program, form, machine, false)?))
 }
 
-/// How many blocks the paths of a converted program take.
-pub fn count(program: &Program<f64, Curve>) -> usize {
+/// How many blocks the paths of a converted program take, lines as asked among them.
+fn count(program: &Program<f64, Curve>) -> usize {
     let cuts = program.steps.iter().filter_map(|located| located.step.cut());
-    cuts.filter(|cut| cut.role == Role::Path)
+    cuts.filter(|cut| cut.role != Role::Approach)
         .map(|cut| match &cut.curve {
             Curve::Lines(line) | Curve::Through(_, line) => line.count(),
             Curve::Polynomial(pieces) => pieces.len(),

@@ -12,7 +12,7 @@ pub mod spline;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
-use crate::ir::{Curve, Cut, Located, Program, Role, Step};
+use crate::ir::{Curve, Cut, Located, Program, Step};
 use crate::machine::Machine;
 use crate::units::Axes;
 
@@ -31,12 +31,13 @@ pub fn convert(
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
         let step = match step {
-            Step::Cut(Cut { feed, role: Role::Path, curve }) => {
+            Step::Cut(cut) if cut.takes_motion() => {
+                let Cut { feed, role, curve } = cut;
                 let stays = !asked && matches!(curve, Curve::Lines(_));
                 let form = if stays { Form::Lines } else { form };
                 let curve = to_form(curve, form, &axes, machine)
                     .map_err(|message| Diagnostic::refusal("form-out-of-reach", message).at(span, ""))?;
-                Step::Cut(Cut { feed, role: Role::Path, curve })
+                Step::Cut(Cut { feed, role, curve })
             }
             step @ (Step::Comment(_)
             | Step::Tool(_)

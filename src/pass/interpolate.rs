@@ -77,14 +77,17 @@ pub fn interpolate(
                     span: located.span,
                 }));
             }
-            Step::Cut(Cut { feed, role: Role::Path, curve }) => {
+            Step::Cut(cut) if cut.takes_motion() => {
+                let Cut { feed, role, curve } = cut;
                 let axes = &intent.program.axes;
-                let feed = feed.map(|feed| of_curve(curve, feed, axes, machine, intent.radius()).0);
+                // What was asked in lines keeps its F, whatever those have become.
+                let counted = |feed| of_curve(curve, feed, axes, machine, intent.radius()).0;
+                let feed = if *role == Role::AsAsked { *feed } else { feed.map(counted) };
                 let tolerance = if matches!(form, Form::Through(_)) { asked } else { tolerance };
                 let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
                 let curve = approximate(curve, form, &frame, tolerance, exact)
                     .map_err(|diagnostic| diagnostic.at(located.span, ""))?;
-                let step = Step::Cut(Cut { feed, role: Role::Path, curve });
+                let step = Step::Cut(Cut { feed, role: *role, curve });
                 steps.push(Located { step, span: located.span });
             }
             step @ (Step::Comment(_)

@@ -220,7 +220,13 @@ fn position_at_home(intent: &mut Intent) {
         })
         .cloned()
         .collect();
-    steps.splice(first..first, over);
+    // A program that was written before has them already.
+    let same = |(a, b): (&Located<f64, Curve>, &Located<f64, Curve>)| a.step == b.step;
+    let made =
+        first.checked_sub(over.len()).is_some_and(|from| steps[from..first].iter().zip(&over).all(same));
+    if !made {
+        steps.splice(first..first, over);
+    }
 }
 
 /// The first rotary axis, the one that a flute turns.

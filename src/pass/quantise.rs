@@ -233,7 +233,7 @@ impl Quantiser<'_> {
             Curve::Lines(line) => Ok(Written::Lines(self.points(&line)?)),
             Curve::Arc(arc) => self.arc(&arc, loose),
             Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
-            Curve::Polynomial(pieces) => self.polynomial(&pieces, role == Role::Path && self.closing),
+            Curve::Polynomial(pieces) => self.polynomial(&pieces, role != Role::Approach && self.closing),
             Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
             Curve::Logarithmic(_) | Curve::Formula(_) => Err(Unwritable), // `interpolate` left none
         }

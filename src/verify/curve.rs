@@ -4,6 +4,7 @@
 //! other. Curves that meet may stand in one run of blocks: where one of them ends is where a block ends at its end,
 //! rounded, about as far along as the curve is long.
 
+use super::splined::Run;
 use super::{Cursor, Found, Status, to_nurbs};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -13,6 +14,7 @@ use crate::geom::deviation::{Bound, Metric};
 use crate::geom::direction;
 use crate::geom::follow::follow_turning;
 use crate::geom::nurbs::Nurbs;
+use crate::geom::runs;
 use crate::ir::{Curve, Polyline, Units, Written, WrittenPoints};
 use crate::machine::Machine;
 use crate::pass::approximate::{Frame, approximate};
@@ -108,10 +110,29 @@ impl Cursor<'_> {
             Some(first) => (at_unit_length(&path, first), at_unit_length(&pieces, first)),
             None => (path, pieces),
         };
-        let scaled = |pieces: &[Bezier]| pieces.iter().map(|piece| metric.scaled(piece)).collect::<Vec<_>>();
+        // In place: a million lines are a third of a gigabyte of pieces.
+        let scaled = |mut pieces: Vec<Bezier>| {
+            for piece in &mut pieces {
+                *piece = metric.scaled(piece);
+            }
+            pieces
+        };
+        let time = minutes(&path, asked, &axes);
+        let (path, pieces) = (scaled(path), scaled(pieces));
         let reach = turning.map(|first| (first, metric.reach()));
-        let followed = follow_turning(&scaled(&path), &scaled(&pieces), reach, asked.tolerance)
+        let followed = follow_turning(&path, &pieces, reach, asked.tolerance)
             .map_err(|error| self.differs("order-differs", error.to_string()))?;
+        // Straight blocks, one a line, are no spline.
+        if let Curve::Lines(line) = asked.curve
+            && !matches!(written, Written::Lines(_))
+            && path.len() < line.count()
+        {
+            let first = pieces.first().map(Bezier::start);
+            let points: Vec<Position> = first.into_iter().chain(pieces.iter().map(Bezier::end)).collect();
+            let likeness = runs::compare(&points, &path);
+            found.splined =
+                Some(Run { lines: line.count(), blocks, from_lines: followed.distance, likeness });
+        }
         if let Some(first) = turning {
             let norm = |axes: &[f64]| axes.iter().map(|x| x * x).sum::<f64>().sqrt();
             let tip = norm(&followed.axes[..first]).min(followed.distance);
@@ -133,7 +154,7 @@ impl Cursor<'_> {
             let rad = followed.turn + pace;
             found.deviation = Bound { mm: tip, rad };
             found.path_blocks = blocks;
-            found.minutes = minutes(&path, asked, &axes);
+            found.minutes = time;
             self.map = self.map.max(Some(followed.map));
             self.pass(written, blocks);
             return Ok(found);
@@ -143,7 +164,7 @@ impl Cursor<'_> {
         let rad = rotary.fold(0.0, |most, (axis, _)| f64::max(most, turn(axis)));
         found.deviation = Bound { mm: followed.distance, rad };
         found.path_blocks = blocks;
-        found.minutes = minutes(&path, asked, &self.decimals.program.axes);
+        found.minutes = time;
         self.map = self.map.max(Some(followed.map));
         self.pass(written, blocks);
         Ok(found)

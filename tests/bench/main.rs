@@ -9,6 +9,7 @@ use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
 use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
 use splinepost::geom::oddeven::OddEven;
+use splinepost::geom::smooth::{CORNER, Fitting, spline};
 use splinepost::machine::Machine;
 use splinepost::simulate::partition;
 use splinepost::simulate::partition::{Cycles, Method, Piece, Weights};
@@ -181,7 +182,7 @@ fn fit(c: &mut Criterion) {
             .collect();
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(count.to_string(), |b| {
-            b.iter(|| splinepost::geom::smooth::spline(black_box(&points), 0.01).is_some());
+            b.iter(|| spline(black_box(&points), Fitting { tolerance: 0.01, corner: CORNER }).is_some());
         });
     }
     group.finish();

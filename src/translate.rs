@@ -1,0 +1,262 @@
+//! NC programs as inputs: what one machine's program does is asked of another machine.
+//!
+//! A reading is explicit and absolute already, so that little is left to do:
+//!
+//! | in the program | asked |
+//! |---|---|
+//! | lines, arcs | as they are: lines stay lines, unless they are to become splines |
+//! | polynomial blocks, B-splines | the curves that their decimals mean |
+//! | the control's own splines through points | the same points, for a control with the same spline |
+//! | tools, spindle, coolant, stops, rapids, remarks | the same |
+//! | work offsets that the text counts from | nothing: positions are those of the work's own zero |
+//! | the lines and remarks round the program | nothing: they are the other machine's affair |
+//!
+//! Axes that the program never moves are left out, X, Y and Z excepted. F is taken as the speed along the linear axes; where
+//! the machine counts rotary axes in it, a program that turns one is refused. So is one that leads the tool's tip: its reader
+//! needs the input to know the tool's direction.
+
+use crate::decimal::Decimal;
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::dialect::Reading;
+use crate::geom::bezier::Bezier;
+use crate::ir::{
+    Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
+};
+use crate::machine::{Machine, RotaryFeed};
+use crate::setup::LAST_REMARK;
+use crate::source::{SourceId, Span};
+use crate::units::{Axes, Axis, Kind, MAX_AXES, Position};
+use crate::verify::{to_arc, to_nurbs};
+
+/// What a program for `machine` asks for.
+///
+/// # Errors
+/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
+/// parameters.
+pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
+    let Warned { value: reading, mut warnings } = reading;
+    let decimals = &reading.decimals;
+    let steps = &decimals.program.steps;
+    if !reading.header {
+        let message = format!("the program does not start with the lines of machine `{}`", machine.name);
+        warnings.push(
+            Diagnostic::warning("header-differs", message)
+                .hint("what other lines set is not asked of the other machine"),
+        );
+    }
+    let end = steps.last().map_or(Span::new(SourceId::INPUT, 0..0), |located| located.span);
+    if !steps.iter().any(|located| matches!(located.step, Step::Rapid(_) | Step::Cut(_))) {
+        return Err(Diagnostic::error("moves-missing", "the program has no move").at(end, "").into());
+    }
+    if !reading.footer {
+        let message = format!("the program does not end with the lines of machine `{}`", machine.name);
+        return Err(Diagnostic::error("footer-differs", message)
+            .at(end, "the last that was read")
+            .hint("it may have been cut off")
+            .into());
+    }
+    let used = used_axes(decimals);
+    let kept: Vec<usize> = (0..decimals.program.axes.count()).filter(|i| used[*i]).collect();
+    let own: Vec<(Axis, Kind)> =
+        kept.iter().map(|i| (decimals.program.axes.name(*i), decimals.program.axes.kind(*i))).collect();
+    let Some(axes) = Axes::new(&own) else {
+        return Err(Diagnostic::error("path-missing", "the program moves no axis").into());
+    };
+    let translation = Translation { decimals, machine, kept };
+    let mut asked = Vec::with_capacity(steps.len());
+    if let Some(first) = steps.first() {
+        asked.extend(
+            own_remarks(&decimals.setup)
+                .map(|remark| Located { step: Step::Comment(remark.clone()), span: first.span }),
+        );
+    }
+    for located in steps {
+        if let Some(step) = translation.step(located)? {
+            asked.push(Located { step, span: located.span });
+        }
+    }
+    let Program { name, number, .. } = &decimals.program;
+    let program = Program { name: name.clone(), number: *number, axes, steps: asked };
+    Ok(Intent { program, tolerance: None, name_span: None, radius: None, warnings })
+}
+
+/// The remarks before the first step that are not about setting up: those behind the last of these.
+fn own_remarks(remarks: &[String]) -> impl Iterator<Item = &String> {
+    let last = remarks.iter().rposition(|remark| remark.starts_with(LAST_REMARK));
+    remarks[last.map_or(0, |last| last + 1)..].iter()
+}
+
+/// Which axes a program moves; X, Y and Z count as moved.
+fn used_axes(decimals: &Decimals) -> [bool; MAX_AXES] {
+    let axes = decimals.program.axes;
+    let mut used: [bool; MAX_AXES] =
+        std::array::from_fn(|i| i < axes.count() && ["X", "Y", "Z"].contains(&axes.name(i).as_str()));
+    for located in &decimals.program.steps {
+        match &located.step {
+            Step::Rapid(targets) => targets.iter().for_each(|(axis, _)| used[*axis] = true),
+            Step::Cut(cut) => {
+                let moves = moved(&cut.curve);
+                (0..MAX_AXES).for_each(|i| used[i] |= moves[i]);
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
+    used
+}
+
+/// Which axes a path moves.
+fn moved(written: &Written) -> [bool; MAX_AXES] {
+    let mut moves = [false; MAX_AXES];
+    let mut see = |start: &[i64; MAX_AXES], other: &[i64; MAX_AXES]| {
+        (0..MAX_AXES).for_each(|i| moves[i] |= start[i] != other[i]);
+    };
+    match written {
+        Written::Lines(line) | Written::Through(_, line) => {
+            line.points().for_each(|point| {
+                // Axes beyond the stride stay where they are.
+                let mut whole = line.start;
+                whole[..line.stride].copy_from_slice(&point[..line.stride]);
+                see(&line.start, &whole);
+            });
+        }
+        Written::Arc(arc) => {
+            see(&arc.start, &arc.end);
+            for i in &arc.plane.axes()[..2] {
+                moves[*i] = true;
+            }
+        }
+        Written::Polynomial(polynomial) => {
+            polynomial.blocks.iter().for_each(|block| see(&polynomial.start, &block.end));
+            for block in &polynomial.blocks {
+                for (axis, coefficients) in block.coefficients.iter().enumerate() {
+                    moves[axis] |= coefficients.iter().any(|a| !a.is_zero());
+                }
+            }
+        }
+        Written::Nurbs(nurbs) => nurbs.points.iter().for_each(|point| see(&nurbs.points[0], point)),
+    }
+    moves
+}
+
+struct Translation<'a> {
+    decimals: &'a Decimals,
+    machine: &'a Machine,
+    /// The axes that are kept, in order.
+    kept: Vec<usize>,
+}
+
+impl Translation<'_> {
+    fn place(&self, position: &Position) -> Position {
+        std::array::from_fn(|i| self.kept.get(i).map_or(0.0, |axis| position[*axis]))
+    }
+
+    /// The new index of an axis.
+    fn index(&self, axis: usize) -> Option<usize> {
+        self.kept.iter().position(|kept| *kept == axis)
+    }
+
+    fn step(&self, located: &Located<Decimal, Written>) -> Result<Option<Step<f64, Curve>>, Diagnostics> {
+        Ok(Some(match &located.step {
+            Step::Comment(text) => Step::Comment(text.clone()),
+            Step::Tool(number) => Step::Tool(*number),
+            Step::Spindle(rpm) => Step::Spindle(rpm.to_f64()),
+            Step::Coolant => Step::Coolant,
+            Step::Home(axis) => return Ok(self.index(*axis).map(Step::Home)),
+            Step::Shift(shifts) => {
+                if shifts.iter().any(|shift| shift.parameter) {
+                    let message = "parameters that an operator may change have no place in another program";
+                    return Err(Diagnostic::error("parameter-translated", message)
+                        .at(located.span, "")
+                        .into());
+                }
+                return Ok(None);
+            }
+            Step::Auxiliary(auxiliary) => {
+                let seconds: Option<Auxiliary<f64>> = auxiliary.try_map(|seconds| Some(seconds.to_f64()));
+                return Ok(seconds.map(Step::Auxiliary));
+            }
+            Step::Rapid(targets) => {
+                let targets = targets.iter().filter_map(|(axis, to)| Some((self.index(*axis)?, to.to_f64())));
+                Step::Rapid(targets.collect())
+            }
+            Step::Cut(Cut { feed, curve, .. }) => {
+                self.feed_is_told(curve, located.span)?;
+                let feed = feed.map(Decimal::to_f64);
+                let (role, curve) = self.curve(curve, located.span)?;
+                Step::Cut(Cut { feed, role, curve })
+            }
+        }))
+    }
+
+    /// Refuses a turning axis whose part in F is not known.
+    fn feed_is_told(&self, curve: &Written, span: Span) -> Result<(), Diagnostics> {
+        let axes = self.decimals.program.axes;
+        let moves = moved(curve);
+        let turns = (0..axes.count()).find(|i| moves[*i] && axes.kind(*i) == Kind::Rotary);
+        match (turns, self.machine.rotary_feed) {
+            (None, _) | (Some(_), RotaryFeed::Free) => Ok(()),
+            (Some(axis), RotaryFeed::DegreesAsMm | RotaryFeed::Surface | RotaryFeed::InverseTime) => {
+                let name = axes.name(axis);
+                let message =
+                    format!("F counts {name} here, and the other machine would count it another way");
+                Err(Diagnostic::error("feed-counts-rotary", message)
+                    .at(span, "")
+                    .hint("compile the input that this program was made from")
+                    .into())
+            }
+        }
+    }
+
+    fn curve(&self, written: &Written, span: Span) -> Result<(Role, Curve), Diagnostics> {
+        let unsound = |message: String| Diagnostic::error("spline-unsound", message).at(span, "");
+        Ok(match written {
+            Written::Lines(points) => (Role::AsAsked, Curve::Lines(self.line(points))),
+            Written::Through(kind, points) => (Role::Path, Curve::Through(*kind, self.line(points))),
+            Written::Arc(arc) => {
+                let found = to_arc(self.decimals, arc);
+                let arc = found.ok_or_else(|| unsound("this arc has no radius".to_owned()))?;
+                (Role::AsAsked, Curve::Arc(arc))
+            }
+            Written::Polynomial(polynomial) => {
+                let mut start = polynomial.start;
+                let piece = |block: &crate::ir::PolynomialBlock| {
+                    let mut piece: Bezier = block.to_bezier(&self.decimals.digits, &start);
+                    start = block.end;
+                    piece.points.iter_mut().for_each(|point| *point = self.place(point));
+                    piece
+                };
+                (Role::Path, Curve::Polynomial(polynomial.blocks.iter().map(piece).collect()))
+            }
+            Written::Nurbs(nurbs) => {
+                let spline = to_nurbs(self.decimals, nurbs).map_err(|error| unsound(error.to_string()))?;
+                (Role::Path, Curve::Nurbs(spline.mapped(|point| self.place(point))))
+            }
+        })
+    }
+
+    fn line(&self, points: &WrittenPoints) -> Polyline {
+        let mut line = Polyline::new(self.place(&self.decimals.position(&points.start)), self.kept.len());
+        for point in points.points() {
+            let mut whole = points.start;
+            whole[..points.stride].copy_from_slice(&point[..points.stride]);
+            line.push(&self.place(&self.decimals.position(&whole)));
+        }
+        line.lines.clone_from(&points.lines);
+        line
+    }
+}
+
+/// Reads the input as a program for `machine`.
+///
+/// # Errors
+/// The machine cannot read it, or see [`intent`].
+pub fn parse(sources: &crate::source::Sources, machine: &Machine) -> Result<Intent, Diagnostics> {
+    let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
+    intent((machine.dialect.read)(text, SourceId::INPUT, machine)?, machine)
+}

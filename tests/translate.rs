@@ -1,0 +1,131 @@
+//! NC programs as inputs: round all dialects and back, and what cannot go.
+
+use crate::support::{folder, machine};
+use splinepost::diagnostic::Diagnostics;
+use splinepost::geom::bezier::Bezier;
+use splinepost::geom::follow::follow;
+use splinepost::ir::Curve;
+use splinepost::machine::Machine;
+use splinepost::source::{Source, Sources};
+use splinepost::verify::Status;
+use splinepost::{Options, Output, compile, front, recompile, translate};
+
+fn program(text: &str, from: &Machine, to: &Machine, motion: Option<&str>) -> Result<Output, Diagnostics> {
+    let motion = motion.and_then(|name| to.dialect.motion(name));
+    let options = Options { motion, ..Options::default() };
+    let sources = Sources::new(Source::new("part.nc", text));
+    recompile(&sources, from, to, &options).map_err(|failure| failure.diagnostics)
+}
+
+fn first(input: &str, language: &str, machine: &Machine, motion: Option<&str>) -> Output {
+    let options =
+        Options { motion: motion.and_then(|name| machine.dialect.motion(name)), ..Options::default() };
+    let sources = Sources::new(Source::new("input", input));
+    compile(&sources, front::find(language).expect("a language"), machine, &options)
+        .unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics))
+}
+
+fn built_in(name: &str) -> Machine {
+    machine(&format!("extends = \"{name}\"\nname = \"{name}\"\n"))
+}
+
+/// A cubic spline that turns in space.
+const SPLINE: &str = "name = \"ROUND\"\n[process]\nfeed = 1000\nspindle = 3000\nretract = { axis = \"Z\", to = 50 }\n\
+    [[curve]]\nkind = \"nurbs\"\naxes = [\"X\", \"Y\", \"Z\"]\ndegree = 3\nknots = [0, 0, 0, 0, 10, 20, 35, 45, 60, 60, 60, 60]\n\
+    points = [[0, 0, 1], [10, 5, 2], [20, -5, 3], [30, 8, 2], [40, 1, 1], [55, 0, 0], [60, 3, 1], [72, 4, 2]]\n";
+
+#[test]
+fn a_cubic_goes_round_all_dialects() {
+    let [sinumerik, heidenhain, mazak] = ["sinumerik", "heidenhain", "mazak"].map(built_in);
+    let start = first(SPLINE, "job", &sinumerik, Some("poly"));
+    let mut text = start.text.clone();
+    let mut from = &sinumerik;
+    for (to, motion) in
+        [(&sinumerik, "bspline"), (&heidenhain, "spl"), (&mazak, "g06.2"), (&sinumerik, "poly")]
+    {
+        let output = program(&text, from, to, Some(motion)).unwrap_or_else(|e| panic!("{motion}: {e:?}"));
+        let report = output.report.as_ref().expect("a report");
+        assert_eq!(report.status, Status::Proved);
+        // Half a unit of four decimals in three axes, and as much again where knots are taken out.
+        assert!(report.deviation.mm < 3.0e-4, "{motion}: {}", report.deviation.mm);
+        assert!(!output.warnings.0.iter().any(|d| d.id == "curve-fitted"), "{motion}");
+        if ["bspline", "g06.2"].contains(&motion) {
+            // Eight control points: joined with a single knot at each joint; and the approach.
+            assert_eq!(report.path_blocks, 8, "{}", output.text);
+        } else {
+            assert_eq!(report.path_blocks, 6, "{}", output.text);
+        }
+        (text, from) = (output.text, to);
+    }
+    assert!(start.text.contains("CURVE") == text.contains("CURVE"), "remarks stay: {text}");
+    // Back where it began: four roundings by half a unit of four decimals at most, in three axes, and as much again where
+    // knots were taken out.
+    let pieces = |text: &str| -> Vec<Bezier> {
+        let sources = Sources::new(Source::new("round.mpf", text));
+        let intent = translate::parse(&sources, &sinumerik).unwrap_or_else(|e| panic!("{e:?}"));
+        let cuts = intent.program.steps.iter().filter_map(|located| located.step.cut());
+        cuts.filter(|cut| matches!(cut.curve, Curve::Polynomial(_)))
+            .flat_map(|cut| cut.curve.pieces())
+            .collect()
+    };
+    let (began, ended) = (pieces(&start.text), pieces(&text));
+    assert_eq!((began.len(), ended.len()), (5, 5));
+    let apart = follow(&ended, &began, 1.0e-3).expect("a bound");
+    assert!(apart.distance < 8.0 * 1.0e-4, "{}", apart.distance);
+    println!("round trip: {:.2e} mm", apart.distance);
+}
+
+#[test]
+fn every_golden_program_of_cl_data_can_be_asked_of_every_machine() {
+    let [sinumerik, heidenhain, mazak] = ["sinumerik", "heidenhain", "mazak"].map(built_in);
+    let mut count = 0;
+    for (name, text) in crate::apt::inputs() {
+        let language = front::find("apt").expect("CL data");
+        let sources = Sources::new(Source::new("input.cl", text.as_str()));
+        for from in [&sinumerik, &heidenhain, &mazak] {
+            let Ok(asked) = compile(&sources, language, from, &Options::default()) else { continue };
+            // Without its input nobody knows that a program leads the tip: its directions are words of nothing.
+            if asked.intent.program.axes.direction().is_some() {
+                assert!(program(&asked.text, from, &sinumerik, None).is_err(), "{name}: {}", from.name);
+                continue;
+            }
+            for to in [&sinumerik, &heidenhain, &mazak] {
+                let output = match program(&asked.text, from, to, None) {
+                    Ok(output) => output,
+                    Err(errors) => {
+                        // Words that a machine has no line for, and points that its decimals do not hold.
+                        let ids: Vec<&str> = errors.0.iter().map(|d| d.id).collect();
+                        panic!("{name}: {} to {}: {ids:?} {errors:?}", from.name, to.name);
+                    }
+                };
+                let report = output.report.expect("a report");
+                assert!(report.deviation.mm <= output.tolerance, "{name}");
+                count += 1;
+            }
+        }
+    }
+    assert!(9 < count, "{count}");
+}
+
+#[test]
+fn what_only_its_machine_knows_is_refused() {
+    let heidenhain = machine("extends = \"heidenhain\"\n[spline]\naxes = [\"X\", \"Y\", \"Z\", \"A\"]\n");
+    let mill = std::fs::read_to_string(folder("fixtures/compile/conical-mill/input.toml")).expect("the mill");
+    let output = first(&mill, "cutter", &heidenhain, None);
+    let errors = program(&output.text, &heidenhain, &built_in("sinumerik"), None).expect_err("A counts in F");
+    assert_eq!(errors.0[0].id, "feed-counts-rotary");
+    let damaged = output.text.replacen("SPL X", "SPL Q", 1);
+    assert!(program(&damaged, &heidenhain, &built_in("sinumerik"), None).is_err());
+    assert!(program("", &heidenhain, &built_in("sinumerik"), None).is_err());
+}
+
+#[test]
+fn a_flute_goes_where_f_counts_the_path_alone() {
+    let sinumerik = built_in("sinumerik");
+    let mill = std::fs::read_to_string(folder("fixtures/compile/conical-mill/input.toml")).expect("the mill");
+    let output = first(&mill, "cutter", &sinumerik, None);
+    let again =
+        program(&output.text, &sinumerik, &sinumerik, Some("poly")).unwrap_or_else(|e| panic!("{e:?}"));
+    // Four flutes, and four approaches, which are lines like others here.
+    assert_eq!(again.report.expect("a report").path_blocks, 8);
+}
