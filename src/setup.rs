@@ -234,6 +234,7 @@ fn not_covered(intent: &Intent) -> Vec<String> {
     }
     if intent.program.axes.direction().is_some() {
         all.push("where the rotary axes go and what they meet there".to_owned());
+        all.push("that the tool turns between blocks as the machine file says".to_owned());
     }
     all
 }

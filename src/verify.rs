@@ -23,6 +23,7 @@ mod curve;
 mod form;
 mod lines;
 mod logarithmic;
+mod report;
 mod splined;
 
 pub use arcs::to_arc;
@@ -44,53 +45,8 @@ use crate::source::{SourceId, Span};
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 
 pub use form::same_form;
+pub use report::{Report, Status};
 pub use splined::Splined;
-
-/// How sure the deviation is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// An upper bound everywhere.
-    Proved,
-    /// Known at the points only: between them the control decides.
-    PointsOnly,
-}
-
-impl Status {
-    /// In one word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Status::Proved => "proved",
-            Status::PointsOnly => "points-only",
-        }
-    }
-}
-
-/// What was found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Report {
-    /// The deviation of the program's paths from the intent.
-    pub deviation: Bound,
-    /// How sure that is.
-    pub status: Status,
-    /// Where the intent is odd-even steps: their distance from the ideal curve.
-    pub from_ideal: Option<Bound>,
-    /// The map that the deviation of curves holds for, where it needed one of its own.
-    pub map: Option<Map>,
-    /// Blocks that cut.
-    pub path_blocks: usize,
-    /// How many blocks each step of the intent became; a remark none.
-    pub blocks: Vec<u32>,
-    /// Runs of lines that were written as splines; none where there are none.
-    pub splined: Option<Splined>,
-    /// The paths' length, mm.
-    pub cutting_length: f64,
-    /// How long the paths take at their F, minutes: without approaches, rapids and acceleration.
-    pub minutes: f64,
-    /// How far the speed is from the one asked for inside a block, as a share of it.
-    pub feed_error: f64,
-    /// What to know at the machine.
-    pub setup: Setup,
-}
 
 /// The distance of odd-even steps from the curve, the same for every flute of a cutter.
 struct Ideal(Option<(Logarithmic, Bound)>);

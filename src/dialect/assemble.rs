@@ -46,6 +46,7 @@ pub struct Assembler<'m> {
     steps: Vec<Located<Decimal, Written>>,
     run: Option<(WrittenPoints, Span)>,
     run_feed: Option<Decimal>,
+    led: bool,
     /// Which axes the cuts so far name.
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.
@@ -82,6 +83,7 @@ impl<'m> Assembler<'m> {
             steps: Vec::new(),
             run: None,
             run_feed: None,
+            led: false,
             named: [false; MAX_AXES],
             unknown: None,
         }
@@ -281,8 +283,26 @@ impl<'m> Assembler<'m> {
         }
     }
 
+    /// Whether the tip of the tool is led.
+    pub fn leads_tip(&self) -> bool {
+        self.led
+    }
+
     /// Adds a step that is no move.
     pub fn step(&mut self, step: Step<Decimal, Written>, span: Span) {
+        match &step {
+            Step::Auxiliary(Auxiliary::TipControl) => self.led = true,
+            Step::Auxiliary(Auxiliary::TipControlEnd) => self.led = false,
+            Step::Auxiliary(_)
+            | Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Rapid(_)
+            | Step::Cut(_) => {}
+        }
         self.flush();
         self.steps.push(Located { step, span });
     }

@@ -58,6 +58,8 @@ pub struct Dialect {
     pub arc: fn(Plane, bool) -> Option<ArcWord>,
     /// The words of the three components of the tool's direction.
     pub direction: [&'static str; 3],
+    /// The words of how the tool turns between two directions, in their plane or with the rotary axes evenly, where it has some.
+    pub turn: Option<[&'static str; 2]>,
     /// Whether it has words for the curve of a second point of the tool.
     pub second_curve: bool,
     /// Spells a legal program.

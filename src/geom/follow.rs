@@ -285,7 +285,10 @@ impl Bounds {
     }
 
     fn found(&self, map: Map) -> Followed {
-        Followed { distance: self.distance, axes: self.axes, turn: self.turned, map }
+        // A sine does not tell an angle from its supplement.
+        let opposite = std::f64::consts::FRAC_PI_2 <= self.seen_turned;
+        let turn = if opposite { f64::INFINITY } else { self.turned };
+        Followed { distance: self.distance, axes: self.axes, turn, map }
     }
 }
 

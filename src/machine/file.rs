@@ -156,6 +156,7 @@ impl Reader {
         let own = file.orientation.unwrap_or_default();
         let orientation = self.orientation(&own, dialect, base.map(|b| b.orientation))?;
         let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
+        self.turns_as_stated(&frame, orientation, dialect);
         let cutter_axes = self.cutter_axes(axes_file.cutter.as_ref(), base)?;
         Some(Machine {
             name: self.or(file.name, base.map(|b| b.name.clone()), "name")?,

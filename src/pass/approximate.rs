@@ -123,8 +123,11 @@ pub fn approximate(
     }
     let first = frame.axes.direction().filter(|_| !pieces.is_empty());
     let turns = first.is_some_and(|first| moving(&pieces).iter().any(|i| first <= *i));
-    if spline && turns && !frame.machine.orientation.second_curve {
-        let message = format!("splines of machine `{}` do not turn the tool", frame.machine.name);
+    // What splines do while the tip is led only second curves say; splines through points have none.
+    let through = matches!(form, Form::Through(_));
+    let led = first.is_some() && !frame.machine.orientation.second_curve;
+    if (spline && led) || (through && (led || turns)) {
+        let message = format!("splines of machine `{}` do not go with a tip that is led", frame.machine.name);
         return Err(Diagnostic::refusal("spline-direction", message).hint("--motion linear does"));
     }
     if spline && may_be_exact && exact(curve, form, frame).is_ok() {

@@ -37,13 +37,15 @@ pub fn choose(
     let winds = place::winds(intent, machine);
     let turns = intent.logarithmic().any(|(log, ..)| log.curve.k() != 0.0);
     let timed = turns && machine.rotary_feed == RotaryFeed::InverseTime;
+    // What splines do while the tip is led only second curves say.
+    let led = intent.program.axes.direction().is_some() && !machine.orientation.second_curve;
     let mut best: Option<(usize, &'static Motion)> = None;
     let mut errors = Diagnostics::new();
     for motion in machine.dialect.motions {
         let allowed = match motion.form {
             Form::Lines => true,
             Form::Polynomial { .. } | Form::Nurbs => {
-                blocked.is_empty() && !straight && winds.is_none() && !timed
+                blocked.is_empty() && !straight && winds.is_none() && !timed && !led
             }
             Form::Through(_) => false,
         };
@@ -68,9 +70,11 @@ pub fn choose(
                 .hint(format!("set [axis.{axis}] kind = \"linear\" if the axis counts on")),
         );
     }
-    let turned = intent.program.axes.direction().map(|first| intent.program.axes.name(first + 2));
-    if !straight && turned.is_some_and(|axis| !machine.splines_move(axis)) {
-        let message = format!("written as lines: splines of machine `{}` do not turn the tool", machine.name);
+    if !straight && led {
+        let message = format!(
+            "written as lines: splines of machine `{}` do not go with a tip that is led",
+            machine.name
+        );
         warnings.push(Diagnostic::warning("spline-direction", message));
     } else if !blocked.is_empty() && !straight {
         let names: Vec<&str> = blocked.iter().map(Axis::as_str).collect();

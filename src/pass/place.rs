@@ -5,12 +5,12 @@
 //! runs from 0 to 159, and so does every other. Where the cutter turns by more than a whole turn, no offset helps: the
 //! flute is counted from where it starts, and lines go round in steps.
 
+mod tip;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
-use crate::geom::direction;
-use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Logarithmic, Shift, Step};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Shift, Step};
 use crate::machine::Machine;
-use crate::units::{Axes, Axis, DEGREES, Kind, MAX_AXES, Position};
+use crate::units::{Axes, Axis, DEGREES, Kind};
 
 /// The intent as this machine counts it: its axes' names, its homes, its work offsets.
 ///
@@ -31,141 +31,11 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
         }
     }
     let machine = machine.with_axes(&intent.program.axes)?;
-    lead_tip(&mut intent, &machine);
+    tip::lead(&mut intent, &machine)?;
     homes(&mut intent, &machine);
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
     Ok(intent)
-}
-
-/// The cosine of the greatest tilt at which the tool goes to the work along its own axis; beyond it goes down.
-const STEEP: f64 = 0.5;
-
-/// In five axes the tip is led from the first move of each tool on. Z retracts before each tool is called; behind it the tool
-/// turns with its tip at safe height, and goes to where the first move begins along its own axis.
-///
-/// No retraction stands between the call of a tool and its first move: on some controls it would end the length of the tool.
-fn lead_tip(intent: &mut Intent, machine: &Machine) {
-    let axes = intent.program.axes;
-    let Some(first) = axes.direction() else { return };
-    let steps = std::mem::take(&mut intent.program.steps);
-    let safe = machine.orientation.safe_height.unwrap_or_else(|| highest(&steps));
-    let mut led = false;
-    let mut all: Vec<Located<f64, Curve>> = Vec::with_capacity(steps.len() + 8);
-    let switch = |auxiliary| Step::Auxiliary(auxiliary);
-    let mut last = None;
-    for located in steps {
-        let span = located.span;
-        last = Some(span);
-        let target = match &located.step {
-            Step::Tool(_) => {
-                if led {
-                    all.push(Located { step: switch(Auxiliary::TipControlEnd), span });
-                }
-                all.push(Located { step: Step::Home(Z), span });
-                led = false;
-                None
-            }
-            Step::Rapid(targets) if !led => {
-                let mut place = [0.0; MAX_AXES];
-                for (axis, to) in targets {
-                    place[*axis] = *to;
-                }
-                Some((place, true))
-            }
-            Step::Cut(cut) if !led => start_of(&cut.curve).map(|place| (place, false)),
-            Step::Rapid(_)
-            | Step::Cut(_)
-            | Step::Comment(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => None,
-        };
-        if let Some((place, rapid)) = target {
-            led = true;
-            all.push(Located { step: switch(Auxiliary::TipControl), span });
-            let above = above(&place, first, safe);
-            if above != place || !rapid {
-                let targets = (0..axes.count()).map(|i| (i, above[i])).collect();
-                all.push(Located { step: Step::Rapid(targets), span });
-            }
-        }
-        all.push(located);
-    }
-    if let Some(span) = last.filter(|_| led) {
-        all.extend([switch(Auxiliary::TipControlEnd), Step::Home(Z)].map(|step| Located { step, span }));
-    }
-    intent.program.steps = all;
-}
-
-/// The axis that retracts before the tool turns: the third.
-const Z: usize = 2;
-
-/// The place at safe height from which the tool goes to its first place along its own axis, or straight down where it is
-/// tilted by more than 60 degrees.
-fn above(place: &Position, first: usize, safe: f64) -> Position {
-    let unit = direction::unit(place, first);
-    let mut above = *place;
-    if safe <= place[Z] {
-        return above;
-    }
-    let up = unit[first + 2];
-    if STEEP <= up {
-        let along = (safe - place[Z]) / up;
-        for i in 0..Z {
-            above[i] += along * unit[first + i];
-        }
-    }
-    above[Z] = safe;
-    above
-}
-
-/// Where a curve starts; none of one that has no place of its own.
-fn start_of(curve: &Curve) -> Option<Position> {
-    match curve {
-        Curve::Lines(line) | Curve::Through(_, line) => Some(line.start),
-        Curve::Arc(arc) => Some(arc.start()),
-        Curve::Nurbs(nurbs) => nurbs.points().first().copied(),
-        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
-            pieces.first().map(Bezier::start)
-        }
-        Curve::Logarithmic(_) => None,
-    }
-}
-
-/// The greatest Z that the tip goes to.
-fn highest(steps: &[Located<f64, Curve>]) -> f64 {
-    let mut highest = f64::NEG_INFINITY;
-    let mut take = |z: f64| highest = highest.max(z);
-    for located in steps {
-        match &located.step {
-            Step::Rapid(targets) => {
-                targets.iter().filter(|(axis, _)| *axis == Z).for_each(|(_, z)| take(*z));
-            }
-            Step::Cut(cut) => {
-                if let Some(start) = start_of(&cut.curve) {
-                    take(start[Z]);
-                }
-                match &cut.curve {
-                    Curve::Lines(line) => line.points().for_each(|p| take(p[Z])),
-                    Curve::Arc(arc) => take(arc.range().1[Z]),
-                    Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(|p| take(p[Z])),
-                    Curve::Through(..) | Curve::Polynomial(_) | Curve::Formula(_) | Curve::Logarithmic(_) => {
-                    }
-                }
-            }
-            Step::Comment(_)
-            | Step::Tool(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => {}
-        }
-    }
-    highest
 }
 
 /// Leaves out retractions to a home that the machine file does not state.

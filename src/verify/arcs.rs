@@ -5,6 +5,7 @@ use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
 use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
+use crate::geom::direction;
 use crate::ir::{ArcBy, Auxiliary, Decimals, Step, Written, WrittenArc, WrittenPoints, sweep};
 use crate::pass::arcs::sagitta;
 use crate::units::{MAX_AXES, Position};
@@ -75,6 +76,9 @@ impl Cursor<'_> {
     /// arc, but for what is found; between, a chord leaves the arc by its sagitta.
     fn arc_of_lines(&mut self, asked: &Arc, points: &WrittenPoints) -> Result<Found, Diagnostics> {
         let end = asked.end();
+        if self.gap == 0.0 {
+            self.starts_at(&asked.start(), points)?;
+        }
         // The lines may run on into others of the same feed, so that the end of the arc is looked for.
         let slack =
             0.5 * (0..3).map(|i| units_to_f64(1, self.decimals.digits[i])).fold(0.0, f64::max) * 1.0001;
@@ -93,13 +97,21 @@ impl Cursor<'_> {
             return Err(self.differs("less-than-asked", "the end of an arc is missing here".to_owned()));
         };
         let count = last + 1;
-        let worst = all().take(count).enumerate().fold(0.0f64, |worst, (i, p)| {
-            worst.max(distance(&p, &asked.eval((i + 1) as f64 / count as f64)))
-        });
+        let turning = self.decimals.program.axes.direction();
+        let (mut worst, mut turned) = (0.0f64, 0.0f64);
+        for (i, mut p) in all().take(count).enumerate() {
+            let on = asked.eval((i + 1) as f64 / count as f64);
+            if let Some(first) = turning {
+                turned = turned.max(direction::between(&p, &on, first));
+                p[first..].copy_from_slice(&on[first..]);
+            }
+            worst = worst.max(distance(&p, &on));
+        }
         let mm = worst + sagitta(asked.radius(), asked.sweep().abs() / count as f64);
         self.within += count;
         self.leave(points);
-        Ok(found(asked, mm, count))
+        let found = found(asked, mm, count);
+        Ok(Found { deviation: Bound { mm, rad: turned }, ..found })
     }
 
     /// What is wrong where an arc stands and another curve was asked.

@@ -16,7 +16,7 @@ use crate::geom::follow::follow_turning;
 use crate::geom::nurbs::Nurbs;
 use crate::geom::runs;
 use crate::ir::{Curve, Polyline, Units, Written, WrittenPoints};
-use crate::machine::Machine;
+use crate::machine::{Machine, Turn};
 use crate::pass::approximate::{Frame, approximate};
 use crate::pass::stretch::{counted_length, linear_length};
 use crate::units::{Axes, DEGREES, Kind, MAX_AXES, Position};
@@ -81,6 +81,12 @@ fn at_unit_length(pieces: &[Bezier], first: usize) -> Vec<Bezier> {
     direction::scaled(pieces, Some(first), 1.0 / length)
 }
 
+/// Straight pieces with both directions at length 1.
+fn with_unit_ends(pieces: &[Bezier], first: usize) -> Vec<Bezier> {
+    let unit = |place: &Position| direction::unit(place, first);
+    pieces.iter().map(|piece| Bezier::line(unit(&piece.start()), unit(&piece.end()))).collect()
+}
+
 impl Cursor<'_> {
     /// Meets the path of a curve.
     pub(super) fn curve(&mut self, asked: &Asked<'_>, written: &Written) -> Result<Found, Diagnostics> {
@@ -107,7 +113,11 @@ impl Cursor<'_> {
         };
         let turning = axes.direction();
         let (path, pieces) = match turning {
-            Some(first) => (at_unit_length(&path, first), at_unit_length(&pieces, first)),
+            Some(first) => {
+                let chords = matches!(written, Written::Lines(_));
+                let path = if chords { with_unit_ends(&path, first) } else { at_unit_length(&path, first) };
+                (path, at_unit_length(&pieces, first))
+            }
             None => (path, pieces),
         };
         // In place: a million lines are a third of a gigabyte of pieces.
@@ -151,7 +161,16 @@ impl Cursor<'_> {
                 let message = "a straight block turns the tool by more than a radian".to_owned();
                 return Err(self.differs("direction-unknown", message));
             };
-            let rad = followed.turn + pace;
+            let mut rad = followed.turn + pace;
+            if matches!(written, Written::Lines(_)) && asked.machine.orientation.turn == Turn::Tilt {
+                // The rotary axes leave the plane between two directions; how far is seen at some places.
+                let of = |place: &Position| [place[first], place[first + 1], place[first + 2]];
+                let departure = path
+                    .iter()
+                    .map(|piece| direction::tilt_departure(&of(&piece.start()), &of(&piece.end())));
+                rad += departure.fold(0.0f64, f64::max);
+                found.status = Status::Sampled;
+            }
             found.deviation = Bound { mm: tip, rad };
             found.path_blocks = blocks;
             found.minutes = time;

@@ -4,10 +4,29 @@ use super::{Cursor, Found};
 use crate::diagnostic::Diagnostics;
 use crate::geom::deviation::Bound;
 use crate::geom::direction;
-use crate::ir::{Polyline, Written};
-use crate::units::Kind;
+use crate::ir::{Polyline, Written, WrittenPoints};
+use crate::units::{Kind, Position};
 
 impl Cursor<'_> {
+    /// The first line of a run starts where that was asked, to a unit of the last decimal: the text does not say it, and the
+    /// way from another place is another line.
+    pub(super) fn starts_at(&self, asked: &Position, points: &WrittenPoints) -> Result<(), Diagnostics> {
+        let axes = self.decimals.program.axes;
+        let before = self.before(points);
+        for axis in 0..axes.direction().unwrap_or(axes.count()) {
+            let known = self.units(axis, asked[axis]).is_some_and(|units| (units - before[axis]).abs() <= 1);
+            if !known {
+                let (name, at) = (axes.name(axis), self.decimals.position(&before)[axis]);
+                let message = format!(
+                    "this straight move was asked to start at {name} {}, and {name} is at {at}",
+                    asked[axis]
+                );
+                return Err(self.differs("start-differs", message));
+            }
+        }
+        Ok(())
+    }
+
     /// Straight moves that were asked as such: every point is met exactly, as rounded.
     pub(super) fn lines(&mut self, asked: &Polyline, written: &Written) -> Result<Found, Diagnostics> {
         let Written::Lines(points) = written else {
@@ -15,6 +34,7 @@ impl Cursor<'_> {
         };
         let (mut worst, mut turned) = (0.0f64, 0.0f64);
         let axes = self.decimals.program.axes;
+        self.starts_at(&asked.start, points)?;
         let linear: Vec<usize> = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).collect();
         let (mut from, mut length) = (asked.start, 0.0);
         for point in asked.points() {

@@ -299,3 +299,131 @@ fn even_rotary_axes_are_told() {
     assert!(0.001 < told && told < 1.0, "{told}");
     assert_eq!(in_motion(&input, &machine("extends = \"sinumerik\""), "linear").unwrap().setup.turn, None);
 }
+
+/// The first error or refusal of CL data on the default machine of a dialect.
+fn refused(text: &str, dialect: &str) -> &'static str {
+    let own = machine(&format!("extends = \"{dialect}\""));
+    let errors = program("iso", text, &own).map(|output| output.text).expect_err(text);
+    errors.0.iter().find(|d| splinepost::diagnostic::Severity::Refusal <= d.severity).expect("an error").id
+}
+
+const HEAD: &str = "UNITS/MM\nLOADTL/1\nSPINDL/8000,RPM,CLW\nFEDRAT/500,MMPM\n";
+
+/// Blocks without their numbers.
+fn blocks(text: &str) -> Vec<&str> {
+    text.lines()
+        .map(|line| line.split_once(' ').filter(|(n, _)| n.starts_with('N')).map_or(line, |(_, rest)| rest))
+        .collect()
+}
+
+#[test]
+fn a_cut_that_comes_first_is_begun_where_it_begins() {
+    // Tool 2 begins with a cut where tool 1 ended, 60 mm below the greatest height.
+    let input = format!(
+        "{HEAD}RAPID\nGOTO/0,0,60,0,0,1\nGOTO/50,0,0,0,0,1\nLOADTL/2\nSPINDL/500,RPM,CLW\nGOTO/50,50,0,0.5,0,0.8660254\nFINI\n"
+    );
+    let own = machine("extends = \"sinumerik\"");
+    let text = program("iso", &input, &own).expect("a program").text;
+    let blocks = blocks(&text);
+    let at = blocks.iter().position(|block| *block == "T2").expect("tool 2");
+    let moves: Vec<&&str> = blocks[at..].iter().filter(|block| block.contains("A3=")).collect();
+    // The tool stood upright there: straight down at feed, and the cut turns it.
+    assert_eq!(*moves[0], "G0 X50 Y0 Z60 A3=0 B3=0 C3=1");
+    assert_eq!(*moves[1], "G1 Z0 A3=0 B3=0 C3=1 F500");
+    assert_eq!(*moves[2], "Y50 A3=0.5 B3=0 C3=0.866025");
+    // Behind it the tilted tool goes up along itself: 60 mm up are 60 tan 30 = 34.641 mm aside.
+    assert_eq!(*moves[3], "G0 X84.641016 Y50 Z60 A3=0.5 B3=0 C3=0.866025");
+    // Whoever starts the cut elsewhere does not verify.
+    let elsewhere = text.replace("G1 Z0 A3=0 B3=0 C3=1 F500", "G1 Z5 A3=0 B3=0 C3=1 F500");
+    assert!(verified(&input, &elsewhere, &own).is_err());
+}
+
+#[test]
+fn where_nothing_is_known_to_be_clear_is_refused() {
+    for (input, id) in [
+        // No tool, so no length.
+        (
+            "UNITS/MM\nFEDRAT/500,MMPM\nRAPID\nGOTO/0,0,60,0.6,0,0.8\nGOTO/0,0,0\nFINI\n".to_owned(),
+            "tool-missing",
+        ),
+        // The first move cuts, and nothing is higher.
+        (format!("{HEAD}GOTO/0,0,-5,0.6,0,0.8\nGOTO/10,0,-5\nFINI\n"), "safe-height"),
+        // An undercut that nothing leaves.
+        (format!("{HEAD}RAPID\nGOTO/0,0,60,0,0,1\nGOTO/0,0,0,0.8,0,-0.6\nFINI\n"), "safe-height"),
+        // Half a turn has no plane.
+        (format!("{HEAD}RAPID\nGOTO/0,0,60,1,0,0\nGOTO/0,0,60,-1,0,0\nFINI\n"), "direction-opposite"),
+        // Whether a tilt holds behind MULTAX/OFF or another tool no page says.
+        (format!("{HEAD}RAPID\nGOTO/0,0,60,0.6,0,0.8\nMULTAX/OFF\nGOTO/0,0,0\nFINI\n"), "tool-axis-stale"),
+        (format!("{HEAD}RAPID\nGOTO/0,0,60,0.6,0,0.8\nLOADTL/2\nGOTO/0,0,0\nFINI\n"), "tool-axis-stale"),
+        (
+            format!(
+                "{HEAD}RAPID\nGOTO/0,0,60,0,0,1\nCYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,1\nGOTO/5,0,0,0.6,0,0.8\nFINI\n"
+            ),
+            "cycle-turns",
+        ),
+    ] {
+        for dialect in ["sinumerik", "heidenhain", "mazak"] {
+            assert_eq!(refused(&input, dialect), id, "{dialect}: {input}");
+        }
+    }
+}
+
+#[test]
+fn a_tool_that_was_changed_is_nowhere_known() {
+    // Spot drill and drill over one hole: the second rapid is made although the first tool ended there.
+    let hole = "CYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,2\nGOTO/10,10,0\nCYCLE/OFF\n";
+    let input = format!("{HEAD}RAPID\nGOTO/10,10,2\n{hole}LOADTL/2\n{hole}RAPID\nGOTO/0,0,50\nFINI\n");
+    let text = program("iso", &input, &machine("extends = \"sinumerik\"")).expect("a program").text;
+    let blocks = blocks(&text);
+    let at = blocks.iter().position(|block| *block == "T2").expect("tool 2");
+    assert!(blocks[at..].contains(&"G0 X10 Y10 Z2"), "{text}");
+    // A cut behind a tool call names every axis.
+    let input = format!("{HEAD}RAPID\nGOTO/10,10,2\nGOTO/10,10,-3\nLOADTL/2\nGOTO/10,10,-8\nFINI\n");
+    for (dialect, block) in
+        [("sinumerik", "X10 Y10 Z-8"), ("heidenhain", "X+10 Y+10 Z-8"), ("mazak", "X10. Y10. Z-8.")]
+    {
+        let text =
+            program("iso", &input, &machine(&format!("extends = \"{dialect}\""))).expect("a program").text;
+        assert!(text.contains(block), "{text}");
+    }
+}
+
+#[test]
+fn splines_that_keep_the_direction_are_lines_where_nothing_else_is_known() {
+    let (_, input) = tilted().into_iter().find(|(name, _)| name == "creo-second-curve").expect("the case");
+    let fixed: String = input
+        .replace("MOVNRB / 5AXIS, LENGTH, 100.0", "MOVNRB / M3AXIS, LENGTH, 0")
+        .lines()
+        .filter(|line| !line.starts_with("MOVNRB / 3"))
+        .map(|line| format!("{}\n", line.replace("0.0, 0.0, 1.0", "0.0, 0.6, 0.8")))
+        .collect();
+    for (dialect, motion) in [("heidenhain", "spl"), ("mazak", "g06.2")] {
+        let own = machine(&format!("extends = \"{dialect}\""));
+        let output = program("creo", &fixed, &own).expect("a program");
+        assert_eq!(output.motion.name, "linear");
+        assert!(output.warnings.0.iter().any(|d| d.id == "spline-direction"), "{:?}", output.warnings);
+        let errors = in_motion(&fixed, &own, motion).expect_err("no page says what they do");
+        assert_eq!(errors.0[0].id, "spline-direction");
+    }
+    // With words for it the direction just stays.
+    let text = in_motion(&fixed, &machine("extends = \"sinumerik\""), "bspline").expect("a program").text;
+    assert!(text.contains("BSPLINE SD=3 X10 Y0 PL=0") && !text.contains("ORICURVE"), "{text}");
+}
+
+#[test]
+fn lines_under_even_rotary_axes_are_held_to_the_tolerance() {
+    let (_, input) = tilted().into_iter().find(|(name, _)| name == "creo-second-curve").expect("the case");
+    // Past Z the turn of C is large: no chord is short enough there.
+    let own = machine("extends = \"mazak\"\n[orientation]\nturn = \"tilt\"\n");
+    match program("creo", &input, &own) {
+        Ok(output) => {
+            let report = output.report.expect("a report");
+            assert_eq!(report.status.word(), "sampled");
+            assert!(report.deviation.rad.to_degrees() <= own.orientation.tolerance);
+        }
+        Err(errors) => assert_eq!(errors.0[0].id, "direction-too-far"),
+    }
+    let wrong = "extends = \"sinumerik\"\n[orientation]\nturn = \"tilt\"\n";
+    let errors = Machine::parse(wrong, SourceId::INPUT).expect_err("ORIVECT stands in tip_control");
+    assert_eq!(errors.0[0].id, "orientation-turn");
+}

@@ -95,6 +95,7 @@ pub const DIALECT: Dialect = Dialect {
         Plane::Zx | Plane::Yz => None,
     },
     direction: ["TX", "TY", "TZ"],
+    turn: None,
     second_curve: false,
     write: write::write,
     read: read::read,

@@ -55,7 +55,9 @@ impl Writer<'_> {
                     self.block(&line);
                     continue;
                 }
-                Part::Tool(..) | Part::Spindle | Part::TipControl(_) => {}
+                // A program can be restarted at each tool.
+                Part::Tool(..) => self.modal.forget(),
+                Part::Spindle | Part::TipControl(_) => {}
                 Part::Home(axis) => self.modal.lose(axis),
                 Part::Shift(shifts) => self.modal.shift(shifts),
                 Part::Remark(text) => self.remark(text),

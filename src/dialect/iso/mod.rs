@@ -99,6 +99,7 @@ pub const MAZAK: Dialect = Dialect {
     // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
     arc: |_, _| Some(ArcWord::Center),
     direction: ["I", "J", "K"],
+    turn: None,
     second_curve: false,
     write: write::write,
     read: read::read,

@@ -386,6 +386,10 @@ impl Reader<'_> {
                 self.assembler.inverse = tenths == 930;
                 return;
             }
+            Some(490) if self.assembler.leads_tip() => {
+                let message = "G49 ends leading the tip, with the lines of the machine file";
+                return self.error("tip-control", message, range);
+            }
             Some(tenths) if STATE_CODES.contains(&tenths) => return,
             _ => {
                 let refused = REFUSED_CODES.iter().find(|(code, _)| Some(*code) == tenths);

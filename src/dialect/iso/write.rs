@@ -75,6 +75,9 @@ impl Writer<'_> {
                         ToolLines::WithSpindle => self.offset.tool_spindle,
                         ToolLines::Alone => self.offset.tool,
                     };
+                    // A program can be restarted at each tool.
+                    self.modal.forget();
+                    self.plane = None;
                     self.offset_tool = called.then_some(*tool);
                     self.offset_due = self.offset_tool;
                 }

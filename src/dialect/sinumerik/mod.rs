@@ -137,6 +137,7 @@ pub const DIALECT: Dialect = Dialect {
         Plane::Zx | Plane::Yz => (!helix).then_some(ArcWord::Way),
     },
     direction: ["A3=", "B3=", "C3="],
+    turn: Some(["ORIVECT", "ORIAXES"]),
     second_curve: true,
     write: write::write,
     read: read::read,

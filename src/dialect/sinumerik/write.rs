@@ -18,9 +18,10 @@ pub(super) const SECOND: [&str; 3] = ["XH", "YH", "ZH"];
 
 /// The word of how the tool turns between two directions.
 pub(super) fn turn_word(turn: Turn) -> &'static str {
+    let [plane, evenly] = super::DIALECT.turn.unwrap_or_default();
     match turn {
-        Turn::GreatCircle => "ORIVECT",
-        Turn::Tilt => "ORIAXES",
+        Turn::GreatCircle => plane,
+        Turn::Tilt => evenly,
     }
 }
 
@@ -82,7 +83,9 @@ impl Writer<'_> {
         for part in parts {
             match part {
                 Part::Fixed(line) => self.block(&line),
-                Part::Tool(..) | Part::Spindle => {}
+                // A program can be restarted at each tool.
+                Part::Tool(..) => self.forget(),
+                Part::Spindle => {}
                 // The machine's own lines say how the tool turns.
                 Part::TipControl(_) => self.second = false,
                 Part::Home(axis) => {

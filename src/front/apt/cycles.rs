@@ -232,7 +232,8 @@ impl Reader<'_> {
                 self.program.rapid(&over, span);
             }
         }
-        if self.program.position != Some(at(top)) {
+        // Behind a tool call nobody knows where the tool is.
+        if !self.program.is_told() || self.program.position != Some(at(top)) {
             self.program.rapid(&at(top), span);
         }
         let line = cycle.line;

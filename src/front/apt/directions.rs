@@ -49,6 +49,10 @@ fn along(p: &Position) -> [f64; 3] {
 impl Reader<'_> {
     /// Whether a spline of one direction keeps that of the tool. Where nothing moved yet, it is the tool's.
     pub(super) fn keeps_axis(&mut self, axis: [f64; 3], span: Span) -> bool {
+        if dot(&axis, &axis) == 0.0 {
+            self.error("tool-axis", "the tool axis is no direction", span);
+            return false;
+        }
         let turned = angle(&axis, &self.program.stood());
         if TURNED < turned && self.program.has_moved() {
             let message = format!("the tool is turned by {turned:.3} degrees where this spline starts");

@@ -42,6 +42,8 @@ impl Reader<'_> {
             if !self.set_axis([numbers[3], numbers[4], numbers[5]], span()) {
                 return;
             }
+        } else if self.axis_stale && numbers.len() == 3 && self.program.axis() != UPRIGHT {
+            return self.stale_axis(span());
         } else if numbers.len() != 3 {
             let message =
                 format!("a point has three numbers, or six with a tool axis, not {}", numbers.len());
@@ -107,6 +109,7 @@ impl Reader<'_> {
         let [x, y, z] = axis.map(|x| x / length);
         let upright = x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z;
         let axis = if upright { UPRIGHT } else { [x, y, z] };
+        self.axis_stale = false;
         if axis != self.program.axis() {
             if let Some(Pending::Circle(_)) = &self.pending {
                 self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
@@ -122,6 +125,18 @@ impl Reader<'_> {
         if !said.arguments().is_empty() && !said.has("ON") && !said.has("OFF") {
             self.error("arguments", "MULTAX is ON or OFF", said.span);
         }
+        self.axis_stale |= said.has("OFF");
+    }
+
+    /// Whether a tilt still holds behind MULTAX/OFF or another tool no page says.
+    fn stale_axis(&mut self, span: Span) {
+        let message =
+            "a point without a tool axis, behind MULTAX/OFF or another tool, while the tool is tilted";
+        self.push(
+            Diagnostic::error("tool-axis-stale", message)
+                .at(span, "")
+                .hint("TLAXIS/0,0,1 or six numbers before it say where the tool points"),
+        );
     }
 
     /// `TLAXIS/i,j,k`
@@ -149,6 +164,8 @@ impl Reader<'_> {
                 }
                 self.home = Some(point);
                 self.program.position = Some(point);
+                let axis = self.program.axis();
+                self.program.stand(axis);
             }
             _ => self.error("arguments", "FROM takes three or six numbers", said.span),
         }
@@ -158,7 +175,14 @@ impl Reader<'_> {
     pub(super) fn gohome(&mut self, said: &Said<'_>) {
         let point = match said.statement.numbers().as_deref() {
             Some([]) => self.home,
-            Some(numbers) if numbers.len() == 3 || numbers.len() == 6 => self.point(numbers, || said.span),
+            Some(numbers) if numbers.len() == 3 || numbers.len() == 6 => {
+                if let Some(&[i, j, k]) = numbers.get(3..)
+                    && !self.set_axis([i, j, k], said.span)
+                {
+                    return;
+                }
+                self.point(numbers, || said.span)
+            }
             _ => return self.error("arguments", "GOHOME takes three numbers or none", said.span),
         };
         self.rapid = false;

@@ -117,6 +117,16 @@ impl Builder {
         self.axis = axis;
     }
 
+    /// Whether the control still knows where the tool is: no tool was called and no section began since its last move.
+    pub(super) fn is_told(&self) -> bool {
+        self.told
+    }
+
+    /// Takes the tool to stand in a direction of length 1, before anything moved.
+    pub(super) fn stand(&mut self, axis: [f64; 3]) {
+        self.stood = axis;
+    }
+
     /// The direction that the tool had when its last move ended.
     pub(super) fn stood(&self) -> [f64; 3] {
         self.stood

@@ -61,6 +61,8 @@ pub(super) struct Reader<'s> {
     /// The cycle that CYCLE/ON takes up again.
     pub(super) last_cycle: Option<Cycle>,
     pub(super) spline: Option<Spline>,
+    /// Whether a tilt of the tool may not hold any more: MULTAX/OFF, or another tool.
+    pub(super) axis_stale: bool,
     /// LENGTH of `MOVNRB/5AXIS`, mm, while it holds.
     pub(super) second_point: Option<f64>,
     /// Where and in which direction the last spline ended.
@@ -146,6 +148,7 @@ impl<'s> Reader<'s> {
             cycle: None,
             last_cycle: None,
             spline: None,
+            axis_stale: false,
             second_point: None,
             spline_end: None,
             joint: None,

@@ -172,6 +172,7 @@ impl Reader<'_> {
         }
         self.tool = Some(number);
         self.program.tool(number, said.span);
+        self.axis_stale = true;
     }
 
     /// `SPINDL/ { n | RPM|SFM|SMM | CLW|CCLW | MAXRPM,n | RANGE,n } | ON | OFF | ORIENT | MAIN`

@@ -260,6 +260,22 @@ impl Reader {
         }
     }
 
+    /// The lines that lead the tip must not say that the tool turns in another way than `turn`.
+    pub(super) fn turns_as_stated(&mut self, frame: &Frame, orientation: Orientation, dialect: &Dialect) {
+        let Some([plane, evenly]) = dialect.turn else { return };
+        let wrong = match orientation.turn {
+            Turn::GreatCircle => evenly,
+            Turn::Tilt => plane,
+        };
+        if frame.tip_control.iter().any(|line| line.0.split_whitespace().any(|word| word == wrong)) {
+            let message = format!("tip_control says {wrong}, and [orientation] turn another way");
+            self.diagnostics.push(
+                Diagnostic::error("orientation-turn", message)
+                    .hint("state both: [orientation] turn, and [program] tip_control with its word"),
+            );
+        }
+    }
+
     fn lines(
         &mut self,
         own: Option<Vec<Spanned<String>>>,

@@ -49,6 +49,11 @@ impl Reader<'_> {
             self.assembler.error("second-curve", message, whole());
             return false;
         }
+        if second && block.denominator.is_some() {
+            let message = "what PO[] divides beside XH YH ZH no page says";
+            self.assembler.error("denominator-axis", message, whole());
+            return false;
+        }
         if !self.second && second {
             self.assembler.error("second-curve", "XH YH ZH belong to ORICURVE", whole());
             return false;

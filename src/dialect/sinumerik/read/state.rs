@@ -81,6 +81,11 @@ impl Reader<'_> {
                     self.assembler.error("orientation-turn", message, range);
                 }
             }
+            "TRAFOOF" if self.assembler.leads_tip() => {
+                let message =
+                    "TRAFOOF in a block of its own ends leading the tip, with the lines of the machine file";
+                self.assembler.error("tip-control", message, range);
+            }
             _ if STATE_CODES.contains(&keyword) => {}
             _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
         }

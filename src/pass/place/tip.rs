@@ -1,0 +1,272 @@
+//! Where the tip of a tilted tool is led from: what stands between its call and its first move, and behind its last.
+//!
+//! Z retracts before each tool is called. Behind the call the lines of the machine file lead the tip, the tool turns with
+//! its tip at safe height, and goes to where its first move begins along its own axis. Behind its last move it goes up to
+//! safe height the same way, before the tip is let go.
+//!
+//! No retraction stands between the call of a tool and its first move: on some controls it would end the length of the tool.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::bezier::Bezier;
+use crate::geom::direction;
+use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Polyline, Role, Step};
+use crate::machine::Machine;
+use crate::source::Span;
+use crate::units::{Axes, MAX_AXES, Position};
+
+/// The axis that retracts before the tool turns: the third.
+const Z: usize = 2;
+
+/// The least height of the tool's direction at which the tool goes to the work along its own axis; below it goes straight
+/// down and up: a tilt of 60 degrees.
+const STEEP: f64 = 0.5;
+
+/// Directions this near to opposite, radians, have no plane to turn in: some 0.01 degrees.
+const OPPOSITE: f64 = 2.0e-4;
+
+struct Walk {
+    axes: Axes,
+    first: usize,
+    safe: f64,
+    stated: bool,
+    all: Vec<Located<f64, Curve>>,
+    led: bool,
+    called: bool,
+    /// Where the tip is, and the tool's direction.
+    at: Option<Position>,
+}
+
+/// Leads the tip in an intent of five axes.
+///
+/// # Errors
+/// A tool's length is not known, there is no safe height, or the tool turns by 180 degrees.
+pub(super) fn lead(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
+    let axes = intent.program.axes;
+    let Some(first) = axes.direction() else { return Ok(()) };
+    let steps = std::mem::take(&mut intent.program.steps);
+    let stated = machine.orientation.safe_height;
+    let mut walk = Walk {
+        axes,
+        first,
+        safe: stated.unwrap_or_else(|| highest(&steps)),
+        stated: stated.is_some(),
+        all: Vec::with_capacity(steps.len() + 8),
+        led: false,
+        called: false,
+        at: None,
+    };
+    let last = steps.last().map(|located| located.span);
+    for located in steps {
+        walk.step(located)?;
+    }
+    if let Some(span) = last.filter(|_| walk.led) {
+        walk.let_go(span)?;
+        walk.push(Step::Home(Z), span);
+    }
+    intent.program.steps = walk.all;
+    Ok(())
+}
+
+impl Walk {
+    fn push(&mut self, step: Step<f64, Curve>, span: Span) {
+        self.all.push(Located { step, span });
+    }
+
+    fn step(&mut self, located: Located<f64, Curve>) -> Result<(), Diagnostics> {
+        let span = located.span;
+        match &located.step {
+            Step::Tool(_) => {
+                if self.led {
+                    self.let_go(span)?;
+                }
+                self.push(Step::Home(Z), span);
+                self.called = true;
+            }
+            Step::Rapid(targets) => {
+                let mut place = self.at.unwrap_or([0.0; MAX_AXES]);
+                for (axis, to) in targets {
+                    place[*axis] = *to;
+                }
+                self.take_up(&place, None, span)?;
+                self.turns(&place, span)?;
+            }
+            Step::Cut(cut) => {
+                if let Some((start, end)) = ends(&cut.curve) {
+                    self.take_up(&start, Some(cut), span)?;
+                    if let Curve::Lines(line) = &cut.curve {
+                        self.turns(&line.start, span)?;
+                        for point in line.points() {
+                            self.turns(&point, span)?;
+                        }
+                    }
+                    self.at = Some(end);
+                }
+            }
+            Step::Comment(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+        self.all.push(located);
+        Ok(())
+    }
+
+    /// Takes a place as reached; the tool must not turn by 180 degrees on the way.
+    fn turns(&mut self, place: &Position, span: Span) -> Result<(), Diagnostics> {
+        let turn = self.at.map_or(0.0, |at| direction::between(&at, place, self.first));
+        self.at = Some(*place);
+        if turn <= std::f64::consts::PI - OPPOSITE {
+            return Ok(());
+        }
+        let message = "the tool turns by 180 degrees here, and every plane is as good as another";
+        Err(Diagnostic::refusal("direction-opposite", message)
+            .at(span, "")
+            .hint("a move between says which way it turns")
+            .into())
+    }
+
+    /// Leads the tip from here on, where it is not led: the tool turns at safe height and goes to `place`, at rapid where a rapid
+    /// follows, otherwise at the feed of the cut that begins there.
+    fn take_up(
+        &mut self,
+        place: &Position,
+        cut: Option<&Cut<f64, Curve>>,
+        span: Span,
+    ) -> Result<(), Diagnostics> {
+        if self.led {
+            return Ok(());
+        }
+        if !self.called {
+            let message =
+                "the tip of a tilted tool is to be led, and no tool is called: its length is not known";
+            return Err(Diagnostic::error("tool-missing", message).at(span, "").into());
+        }
+        self.led = true;
+        let above = self.above(place, span)?;
+        if above == *place && cut.is_some() && !self.stated {
+            let message = "the first move of this tool cuts, and nothing says where the tool may turn before";
+            return Err(Diagnostic::refusal("safe-height", message)
+                .at(span, "")
+                .hint(
+                    "state [orientation] safe_height in the machine file, or begin with a rapid in clear air",
+                )
+                .into());
+        }
+        self.push(Step::Auxiliary(Auxiliary::TipControl), span);
+        if above != *place || cut.is_some() {
+            self.rapid(&above, span);
+        }
+        if let Some(cut) = cut.filter(|_| above != *place) {
+            let mut line = Polyline::new(above, self.axes.count());
+            line.push(place);
+            let down = Cut { feed: cut.feed, role: Role::Approach, curve: Curve::Lines(line) };
+            self.push(Step::Cut(down), span);
+        }
+        self.at = Some(*place);
+        Ok(())
+    }
+
+    /// Lets the tip go: a tool that is tilted goes to safe height first.
+    fn let_go(&mut self, span: Span) -> Result<(), Diagnostics> {
+        if let Some(at) = self.at {
+            let above = self.above(&at, span)?;
+            let unit = direction::unit(&at, self.first);
+            let upright =
+                unit[self.first] == 0.0 && unit[self.first + 1] == 0.0 && 0.0 < unit[self.first + 2];
+            if above != at && !upright {
+                self.rapid(&above, span);
+            }
+        }
+        self.push(Step::Auxiliary(Auxiliary::TipControlEnd), span);
+        self.led = false;
+        Ok(())
+    }
+
+    fn rapid(&mut self, place: &Position, span: Span) {
+        let unit = direction::unit(place, self.first);
+        let targets = (0..self.axes.count()).map(|i| (i, unit[i])).collect();
+        self.push(Step::Rapid(targets), span);
+    }
+
+    /// The place at safe height from which the tool goes to a place, and to which it comes back.
+    fn above(&self, place: &Position, span: Span) -> Result<Position, Diagnostics> {
+        let mut above = *place;
+        if self.safe <= place[Z] {
+            return Ok(above);
+        }
+        let unit = direction::unit(place, self.first);
+        let up = unit[self.first + 2];
+        if up <= 0.0 {
+            let message =
+                "the tool does not point up here, so that no way to safe height is known to be clear";
+            return Err(Diagnostic::refusal("safe-height", message)
+                .at(span, "")
+                .hint("rapids of the input have to bring it there; [orientation] safe_height says how high that is")
+                .into());
+        }
+        if STEEP <= up {
+            let along = (self.safe - place[Z]) / up;
+            for i in 0..Z {
+                above[i] += along * unit[self.first + i];
+            }
+        }
+        above[Z] = self.safe;
+        Ok(above)
+    }
+}
+
+/// Where a curve starts and ends; none of one that has no places of its own.
+fn ends(curve: &Curve) -> Option<(Position, Position)> {
+    match curve {
+        Curve::Lines(line) | Curve::Through(_, line) => {
+            let mut end = line.start;
+            let last = line.values.chunks_exact(line.stride).next_back()?;
+            end[..last.len()].copy_from_slice(last);
+            Some((line.start, end))
+        }
+        Curve::Arc(arc) => Some((arc.start(), arc.end())),
+        Curve::Nurbs(nurbs) => Some((*nurbs.points().first()?, *nurbs.points().last()?)),
+        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
+            Some((pieces.first().map(Bezier::start)?, pieces.last().map(Bezier::end)?))
+        }
+        Curve::Logarithmic(_) => None,
+    }
+}
+
+/// The greatest Z that the tip goes to.
+fn highest(steps: &[Located<f64, Curve>]) -> f64 {
+    let mut highest = f64::NEG_INFINITY;
+    let mut take = |z: f64| highest = highest.max(z);
+    for located in steps {
+        match &located.step {
+            Step::Rapid(targets) => {
+                for (_, z) in targets.iter().filter(|(axis, _)| *axis == Z) {
+                    take(*z);
+                }
+            }
+            Step::Cut(cut) => {
+                if let Some((start, end)) = ends(&cut.curve) {
+                    take(start[Z]);
+                    take(end[Z]);
+                }
+                match &cut.curve {
+                    Curve::Lines(line) => line.points().for_each(|p| take(p[Z])),
+                    Curve::Arc(arc) => take(arc.range().1[Z]),
+                    Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(|p| take(p[Z])),
+                    Curve::Through(..) | Curve::Polynomial(_) | Curve::Formula(_) | Curve::Logarithmic(_) => {
+                    }
+                }
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
+    highest
+}
