@@ -391,12 +391,9 @@ fn a_tool_that_was_changed_is_nowhere_known() {
 #[test]
 fn splines_that_keep_the_direction_are_lines_where_nothing_else_is_known() {
     let (_, input) = tilted().into_iter().find(|(name, _)| name == "creo-second-curve").expect("the case");
-    let fixed: String = input
-        .replace("MOVNRB / 5AXIS, LENGTH, 100.0", "MOVNRB / M3AXIS, LENGTH, 0")
-        .lines()
-        .filter(|line| !line.starts_with("MOVNRB / 3"))
-        .map(|line| format!("{}\n", line.replace("0.0, 0.0, 1.0", "0.0, 0.6, 0.8")))
-        .collect();
+    let fixed = input.replace("MOVNRB / 5AXIS, LENGTH, 100.0", "MOVNRB / M3AXIS, LENGTH, 0");
+    let lines = fixed.lines().filter(|line| !line.starts_with("MOVNRB / 3"));
+    let fixed = lines.collect::<Vec<_>>().join("\n").replace("0.0, 0.0, 1.0", "0.0, 0.6, 0.8") + "\n";
     for (dialect, motion) in [("heidenhain", "spl"), ("mazak", "g06.2")] {
         let own = machine(&format!("extends = \"{dialect}\""));
         let output = program("creo", &fixed, &own).expect("a program");
