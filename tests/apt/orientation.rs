@@ -2,6 +2,7 @@
 
 use super::{cases, input, program};
 use splinepost::diagnostic::Diagnostics;
+use splinepost::geom::elementary;
 use splinepost::machine::Machine;
 use splinepost::pass::check;
 use splinepost::source::{Source, SourceId, Sources};
@@ -423,4 +424,40 @@ fn lines_under_even_rotary_axes_are_held_to_the_tolerance() {
     let wrong = "extends = \"sinumerik\"\n[orientation]\nturn = \"tilt\"\n";
     let errors = Machine::parse(wrong, SourceId::INPUT).expect_err("ORIVECT stands in tip_control");
     assert_eq!(errors.0[0].id, "orientation-turn");
+}
+
+/// Lines in six coordinates become one spline with a second curve.
+#[test]
+fn runs_of_lines_become_a_spline_with_a_second_curve() {
+    // The tip on a circle of radius 40, the tool tilted outward by 15 to 20 degrees.
+    let point = |i: i32| {
+        let u = f64::from(i) / 600.0;
+        let (angle, tilt) = (1.5 * u, (15.0 + 5.0 * u).to_radians());
+        let (c, s) = (elementary::cos(angle), elementary::sin(angle));
+        let (across, up) = (elementary::sin(tilt), elementary::cos(tilt));
+        let (x, y, i, j) = (40.0 * c, 40.0 * s, across * c, across * s);
+        format!("GOTO/{x:.5},{y:.5},0.0,{i:.7},{j:.7},{up:.7}")
+    };
+    let points = (0..=600).map(point).collect::<Vec<_>>().join("\n");
+    let input = format!(
+        "{HEAD}RAPID\nGOTO/40,0,50,0.258819,0,0.965926\n{points}\nRAPID\nGOTO/2.8,39.9,50,0.0241925,0.341164,0.939693\nFINI\n"
+    );
+    for motion in ["poly", "bspline"] {
+        let own = machine(&format!("extends = \"sinumerik\"\nmotion = \"{motion}\"\ntolerance = 0.005\n"));
+        let sources = Sources::new(Source::new("input.cl", input.clone()));
+        let options = Options { fit: true, ..Options::default() };
+        let language = front::find("iso").expect("a language");
+        let output = compile(&sources, language, &own, &options)
+            .unwrap_or_else(|failure| panic!("{motion}: {:?}", failure.diagnostics));
+        let report = output.report.expect("a proof");
+        assert!(report.deviation.mm <= 0.005, "{motion}: {:?}", report.deviation);
+        assert!(
+            report.deviation.rad.to_degrees() <= own.orientation.tolerance,
+            "{motion}: {:?}",
+            report.deviation
+        );
+        assert!(output.text.contains("ORICURVE\n") && output.text.contains("XH"), "{}", output.text);
+        assert!(report.path_blocks < 60, "{motion}: {} blocks of 601 points", report.path_blocks);
+        verified(&input, &output.text, &own).unwrap_or_else(|e| panic!("{motion}: {e:?}"));
+    }
 }
