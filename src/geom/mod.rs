@@ -41,3 +41,6 @@ pub mod oddeven;
 mod relax;
 pub mod runs;
 pub mod smooth;
+
+#[cfg(test)]
+mod tests;
