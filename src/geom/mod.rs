@@ -17,6 +17,7 @@
 //! | [`fit`] | few pieces within a tolerance |
 //! | [`chain`] | a curve of many pieces as one function |
 //! | [`geometric`] | few pieces within a tolerance of any curve |
+//! | `relax` | one cubic fewer, by joints that leave the curve |
 //! | [`smooth`] | runs of points to splines, corners kept |
 //! | [`runs`] | such a run beside its spline: distances, curvature, corners |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
@@ -37,5 +38,9 @@ pub mod knots;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;
+mod relax;
 pub mod runs;
 pub mod smooth;
+
+#[cfg(test)]
+mod tests;
