@@ -3,7 +3,7 @@
 //! No public file shows some of them: what is called synthetic here was written for these tests.
 
 use super::program;
-use splinepost::dialect::Dialect;
+use splinepost::dialect::{Dialect, Form};
 use splinepost::machine::Machine;
 use splinepost::source::{Source, Sources};
 use splinepost::verify::Status;
@@ -331,4 +331,36 @@ fn the_first_control_point_may_stand_in_the_spline_too() {
         "bspline",
     );
     assert!(first(&weighted)[0].starts_with("BSPLINE SD=3 X0 Y0 PL=0 PW=1"), "{:?}", first(&weighted));
+}
+
+/// Synthetic: degrees 2 and 5, exact where a control takes them and fitted where not.
+#[test]
+fn other_degrees_reach_every_dialect() {
+    let curve = |order: usize, points: &[[i32; 2]]| {
+        let (n, spans) = (points.len(), points.len() + 1 - order);
+        let inner = (1..spans).map(|i| i.to_string());
+        let ends = |k: usize| std::iter::repeat_n(k.to_string(), order);
+        let knots: Vec<String> = ends(0).chain(inner).chain(ends(spans)).collect();
+        let places: Vec<String> = points.iter().map(|[x, y]| format!("{x},{y},0")).collect();
+        let [x, y] = points[n - 1];
+        format!(
+            "PARTNO DEGREE\nLOADTL/1\nRAPID\nGOTO/0,0,10\nFEDRAT/1000,MMPM\nGOTO/0,0,0\nMOVNRB/M3AXIS,LENGTH,0\n\
+             MOVNRB/ON,{order},{},0,{n},0\nMOVNRB/1,{}\nMOVNRB/2,{}\nMOVNRB/OFF\nGOTO/{x},{y},10\nFINI\n",
+            knots.len(),
+            knots.join(","),
+            places.join(",")
+        )
+    };
+    let parabolas = curve(3, &[[0, 0], [10, 20], [30, 20], [40, 0]]);
+    let quintics = curve(6, &[[0, 0], [10, 20], [20, -10], [30, 25], [45, 5], [55, 0], [60, 10]]);
+    for text in [parabolas, quintics] {
+        for dialect in splinepost::dialect::DIALECTS {
+            for motion in dialect.motions.iter().filter(|motion| !matches!(motion.form, Form::Through(_))) {
+                let output = in_motion("creo", &text, &machine(dialect), motion.name);
+                let report = output.report.expect("a proof");
+                assert_eq!(report.status, Status::Proved, "{}", motion.name);
+                assert!(report.deviation.mm <= output.tolerance, "{}: {:?}", motion.name, report.deviation);
+            }
+        }
+    }
 }
