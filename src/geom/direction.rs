@@ -12,7 +12,7 @@
 //! φ − sθ is −s(1 − s)(1 − 2s) θ³/6 to leading order, at most 0.016 θ³; a test holds the bound over the range.
 
 use super::bezier::Bezier;
-use super::elementary::{atan, cos, sin};
+use super::elementary::{atan, atan2, cos, sin};
 use crate::units::{DEGREES, Position};
 
 /// The components of a direction, from `first` on.
@@ -60,11 +60,7 @@ pub fn angle(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     }
     let less: [f64; 3] = std::array::from_fn(|i| a[i] / size_a - b[i] / size_b);
     let more: [f64; 3] = std::array::from_fn(|i| a[i] / size_a + b[i] / size_b);
-    let opposite = dot(&more, &more).sqrt();
-    if opposite == 0.0 {
-        return std::f64::consts::PI;
-    }
-    2.0 * atan(dot(&less, &less).sqrt() / opposite)
+    2.0 * atan2(dot(&less, &less).sqrt(), dot(&more, &more).sqrt())
 }
 
 /// The angle between the directions of two positions, radians.
@@ -98,7 +94,7 @@ pub fn tilt_departure(a: &[f64; 3], b: &[f64; 3]) -> f64 {
         let size = dot(d, d).sqrt();
         let tilt = angle(d, &[0.0, 0.0, size]);
         let flat = (d[0] * d[0] + d[1] * d[1]).sqrt();
-        let turn = if flat <= 1.0e-12 * size { None } else { Some(direction(d[1], d[0])) };
+        let turn = if flat <= 1.0e-12 * size { None } else { Some(atan2(d[1], d[0])) };
         (tilt, turn)
     };
     let ((tilt_a, turn_a), (tilt_b, turn_b)) = (polar(a), polar(b));
@@ -123,15 +119,6 @@ pub fn tilt_departure(a: &[f64; 3], b: &[f64; 3]) -> f64 {
         worst = worst.max(angle(&own, &even));
     }
     worst
-}
-
-/// atan2(y, x), radians.
-fn direction(y: f64, x: f64) -> f64 {
-    if x.abs() < y.abs() {
-        return std::f64::consts::FRAC_PI_2.copysign(y) - atan(x / y);
-    }
-    let angle = atan(y / x);
-    if 0.0 < x { angle } else { angle + std::f64::consts::PI.copysign(y) }
 }
 
 /// The angle of a direction to Z, degrees.

@@ -4,7 +4,6 @@
 //! the lines: what was made of them is compared with them in the end.
 
 use crate::geom::bezier::Bezier;
-use crate::geom::direction;
 use crate::geom::smooth::{self, Fitting};
 use crate::ir::{Curve, Cut, Intent, Role, Step};
 use crate::machine::Machine;
@@ -31,8 +30,9 @@ pub fn fit(intent: &Intent, machine: &Machine, fitting: Fitting) -> Intent {
             if let Some(first) = frame.axes.direction() {
                 // The second curve runs so far from the tip.
                 let long = |p: &Position| {
-                    direction::scaled(&[Bezier::line(*p, *p)], Some(first), machine.orientation.length)[0]
-                        .start()
+                    let mut p = *p;
+                    p[first..first + 3].iter_mut().for_each(|x| *x *= machine.orientation.length);
+                    p
                 };
                 spline = spline.mapped(long);
             }
