@@ -12,7 +12,7 @@
 
 mod arc;
 
-pub use arc::{ArcBy, WrittenArc, sweep, through, turned_end};
+pub use arc::{ArcBy, Circle, WrittenArc, sweep, turned_end};
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;

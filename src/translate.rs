@@ -20,7 +20,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::geom::bezier::Bezier;
 use crate::ir::{
-    Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
+    ArcBy, Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written,
+    WrittenPoints,
 };
 use crate::machine::{Machine, RotaryFeed};
 use crate::setup::LAST_REMARK;
@@ -127,8 +128,11 @@ fn moved(written: &Written) -> [bool; MAX_AXES] {
         }
         Written::Arc(arc) => {
             see(&arc.start, &arc.end);
-            for i in &arc.plane.axes()[..2] {
-                moves[*i] = true;
+            match arc.by {
+                ArcBy::Way(way) => see(&arc.start, &way),
+                ArcBy::Center(circle, _) | ArcBy::Turn(circle, _) => {
+                    circle.plane.axes()[..2].iter().for_each(|i| moves[*i] = true);
+                }
             }
         }
         Written::Polynomial(polynomial) => {

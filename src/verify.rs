@@ -436,7 +436,7 @@ impl<'p> Cursor<'p> {
         };
         match (curve, &cut.curve) {
             (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written).map(timed),
-            (Curve::Arc(arc), written) => self.arc(arc, written).map(timed),
+            (Curve::Arc(arc), _) => self.arc(arc, tolerance).map(timed),
             (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),
             (Curve::Formula(described), written) => {
                 let (machine, radius) = (self.machine, self.radius);

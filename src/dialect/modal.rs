@@ -270,6 +270,13 @@ impl<'m> Modal<'m> {
         }
     }
 
+    /// The words of the tool's direction, where it is led: they are never modal.
+    pub fn directions(&mut self, point: &Units) {
+        if let Some(first) = self.direction {
+            (first..first + 3).for_each(|i| self.axis(i, point[i]));
+        }
+    }
+
     /// The words of a rapid.
     pub fn targets(&mut self, targets: &[(usize, Decimal)]) {
         for (axis, to) in targets {

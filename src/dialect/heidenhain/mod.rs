@@ -90,10 +90,14 @@ pub const DIALECT: Dialect = Dialect {
     inverse_time: false,
     round: Round::Step,
     // C and CP lie in the working plane, square to the tool.
-    arc: |plane, helix| match plane {
-        Plane::Xy => Some(if helix { ArcWord::Turn } else { ArcWord::Center }),
-        Plane::Zx | Plane::Yz => None,
+    arc: |kind, _| match kind.plane {
+        Some(Plane::Xy) => Some(if kind.helix || kind.turns { ArcWord::Turn } else { ArcWord::Center }),
+        Some(Plane::Zx | Plane::Yz) | None => None,
     },
+    // IPA is −5400 to 5400 degrees (TNC 426/430 280 476 p.154).
+    most_turns: 15,
+    planes: false,
+    directed_arcs: true,
     direction: ["TX", "TY", "TZ"],
     turn: None,
     second_curve: false,

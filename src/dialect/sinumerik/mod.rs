@@ -83,6 +83,7 @@ mod write;
 use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
+use crate::machine::Machine;
 
 /// The dialect.
 pub const DIALECT: Dialect = Dialect {
@@ -132,16 +133,27 @@ pub const DIALECT: Dialect = Dialect {
     round: Round::Shortest,
     // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
     // no plane; it has no helices.
-    arc: |plane, helix| match plane {
-        Plane::Xy => Some(ArcWord::Center),
-        Plane::Zx | Plane::Yz => (!helix).then_some(ArcWord::Way),
+    arc: |kind, machine| match kind.plane {
+        Some(Plane::Xy) => Some(ArcWord::Center),
+        Some(Plane::Zx | Plane::Yz) if takes_planes(machine) => Some(ArcWord::Center),
+        Some(Plane::Zx | Plane::Yz) | None => (!kind.helix).then_some(ArcWord::Way),
     },
+    // TURN= is 0 to 999.
+    most_turns: 999,
+    planes: true,
+    directed_arcs: true,
     direction: ["A3=", "B3=", "C3="],
     turn: Some(["ORIVECT", "ORIAXES"]),
     second_curve: true,
     write: write::write,
     read: read::read,
 };
+
+/// Whether G18 and G19 are written and read: where the machine file says that they leave the tool's length where it is, and no
+/// tip is led.
+fn takes_planes(machine: &Machine) -> bool {
+    machine.arc_planes && machine.axes.direction().is_none()
+}
 
 /// *NC Programming* 12.19 p.42.
 fn is_name(name: &str) -> bool {
