@@ -71,8 +71,7 @@ impl WrittenArc {
     }
 }
 
-/// The arc from `start` by `way` to `end`; none where they lie on a line, or where `way` is so near to `end` that rounding
-/// decides.
+/// The arc from `start` by `way` to `end`; none where they lie on a line.
 fn by_way(digits: &[u8; MAX_AXES], start: &Units, way: &Units, end: &Units) -> Option<Arc> {
     let place = |units: &Units| -> Position { std::array::from_fn(|i| units_to_f64(units[i], digits[i])) };
     let flat = Plane::ALL.into_iter().find(|plane| {
@@ -146,10 +145,6 @@ fn through(
     Some((if 0 < cross { Sense::CounterClockwise } else { Sense::Clockwise }, center))
 }
 
-/// How much nearer than the start the place on the way may be to the end, squared: the centre is known to some roundings
-/// times the root of this.
-const NEAR_END: f64 = 1.0e6;
-
 /// The axis about which the arc from `s` by `p` to `e` goes counter-clockwise, of any length, and its centre, mm, in X Y Z;
 /// none where they lie on a line.
 ///
@@ -159,29 +154,34 @@ const NEAR_END: f64 = 1.0e6;
 /// s + ( c² n × b + b² c × n ) / (2 n²)
 /// ```
 ///
-/// b, c, their squares and n are whole numbers. What is rounded behind them costs some ε R (|b| + |c|)/|b − c|.
+/// b, c, their squares and n are whole numbers. What is rounded behind them costs some ε R (|b| + |c|)/|b − c|, so that where
+/// p and e are the nearest of the three the same is done from e.
 fn in_space(digits: &[u8; MAX_AXES], s: &Units, p: &Units, e: &Units) -> Option<([f64; 3], [f64; 3])> {
-    let (b, c, most) = ways([0, 1, 2], digits, s, p, e)?;
+    let (mut b, mut c, most) = ways([0, 1, 2], digits, s, p, e)?;
     // Below 2⁶¹ each, so that neither a difference of two products nor a sum of three squares is too large.
     let n = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
-    let square = |a: [i128; 3]| a.iter().map(|x| x * x).sum::<i128>() as f64;
-    let (b2, c2) = (square(b), square(c));
-    let apart = square(std::array::from_fn(|i| b[i] - c[i]));
-    if n == [0; 3] || NEAR_END * apart < b2.max(c2) {
+    if n == [0; 3] {
         return None;
+    }
+    let square = |a: [i128; 3]| a.iter().map(|x| x * x).sum::<i128>();
+    let across = std::array::from_fn(|i| b[i] - c[i]);
+    let mut from = s;
+    if square(across) < square(b).min(square(c)) {
+        // s − e and p − e, whose product is n too.
+        (from, b, c) = (e, c.map(|x| -x), across);
     }
     let unit = power_of_ten(most) as f64;
     // In mm and mm².
     let length = |a: [i128; 3], by: f64| a.map(|x| x as f64 / by);
+    let (b2, c2) = (square(b) as f64 / (unit * unit), square(c) as f64 / (unit * unit));
     let (b, c, n) = (length(b, unit), length(c, unit), length(n, unit * unit));
-    let (b2, c2) = (b2 / (unit * unit), c2 / (unit * unit));
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     };
     let (first, second) = (cross(n, b), cross(c, n));
     let n2 = n.iter().map(|x| x * x).sum::<f64>();
     let center = std::array::from_fn(|i| {
-        units_to_f64(s[i], digits[i]) + (c2 * first[i] + b2 * second[i]) / (2.0 * n2)
+        units_to_f64(from[i], digits[i]) + (c2 * first[i] + b2 * second[i]) / (2.0 * n2)
     });
     Some((n, center))
 }
@@ -252,9 +252,13 @@ mod tests {
         assert!((arc.radius() - 5.0).abs() < 1e-14 && (arc.sweep() - std::f64::consts::PI).abs() < 1e-15);
         let quarter = arc.eval(0.5);
         assert!((quarter[0] - 1.0).abs() < 1e-14 && (quarter[1] - 7.0).abs() < 1e-14, "{quarter:?}");
-        // On a line, or where rounding would decide.
-        assert!(by_way(&DIGITS, &s, &at(1.0, 2.0, 3.0), &e).is_none());
-        assert!(by_way(&DIGITS, &s, &at(-2.001, 2.001, -1.0), &e).is_none());
+        assert!(by_way(&DIGITS, &s, &at(1.0, 2.0, 3.0), &e).is_none(), "on a line");
+        // Another place of the same circle, next to its end: (−24, 7)/25 of R, which lies in whole decimals.
+        let (normal, center) = in_space(&DIGITS, &s, &at(-1.88, 3.4, -0.84), &e).unwrap();
+        assert!(
+            normal[0] < 0.0 && (0..3).all(|i| (center[i] - [1.0, 2.0, 3.0][i]).abs() < 1e-14),
+            "{center:?}"
+        );
     }
 
     #[test]

@@ -117,4 +117,37 @@ mod tests {
             assert!(0.2 * tolerance < worst || tolerance == 1.0, "{tolerance}: {worst}");
         }
     }
+
+    /// What one block takes of an arc of so many turns: by its centre, as a control takes several turns or not, by a place on
+    /// the way, or by an angle.
+    #[test]
+    fn blocks_tell_turns_apart() {
+        let at = |x: f64, y: f64, z: f64| [x, y, z, 0.0, 0.0, 0.0];
+        let turns = |machine: &str, word: ArcWord, turns: f64| {
+            let machine = Machine::built_in(machine).unwrap();
+            let angle = turns.fract() * std::f64::consts::TAU;
+            let end = at(10.0 * elementary::cos(angle), 10.0 * elementary::sin(angle), -turns);
+            let end = if turns.fract() == 0.0 { at(10.0, 0.0, -turns) } else { end };
+            let once =
+                Arc::new(Plane::Xy, Sense::CounterClockwise, at(10.0, 0.0, 0.0), end, [0.0, 0.0]).unwrap();
+            let more = (turns - once.turns()).round() as u32;
+            let parts = blocks(&once.with_turns(more), word, &machine);
+            assert!(parts.windows(2).all(|pair| pair[0].end() == pair[1].start()));
+            parts.iter().map(|part| (part.turns() * 1000.0).round() / 1000.0).collect::<Vec<f64>>()
+        };
+        let (sinumerik, mazak, heidenhain) = ("sinumerik", "mazak", "heidenhain");
+        assert_eq!(turns(sinumerik, ArcWord::Center, 1.0), [1.0]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.25), [2.25]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.0), [1.5, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.001), [1.501, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 1000.5), [998.5, 0.5, 1.5]);
+        assert_eq!(turns(mazak, ArcWord::Center, 2.25), [1.0, 1.0, 0.25]);
+        assert_eq!(turns(mazak, ArcWord::Center, 2.0), [1.0, 1.0]);
+        assert_eq!(turns(heidenhain, ArcWord::Turn, 15.0), [15.0]);
+        assert_eq!(turns(heidenhain, ArcWord::Turn, 15.25), [15.0, 0.25]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 0.75), [0.75]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 0.9), [0.45, 0.45]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 1.0), [0.5, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 2.0), [0.667, 0.667, 0.667]);
+    }
 }

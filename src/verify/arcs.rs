@@ -63,6 +63,10 @@ impl Cursor<'_> {
             bound = bound.max(part.bound);
             blocks += part.blocks;
             from = part.to;
+            if !(bound.mm <= tolerance) {
+                // That is told of the arc, not that another block is missing.
+                break;
+            }
         }
         Ok(Found { deviation: bound, path_blocks: blocks, cutting_length: asked.length(), ..Found::new() })
     }

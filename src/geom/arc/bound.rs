@@ -11,25 +11,24 @@
 //!
 //! # By a place on the way
 //!
-//! Three places are one circle, which no control can run otherwise. Of two arcs p and q in space, with their centres c and
-//! c₂, radii A, A₂ to their starts and B, B₂ a quarter turn further, the difference at equal shares is
+//! Three places are one circle, which no control can run otherwise. Of two arcs p and q in space, with radii A, A₂ to their
+//! starts and B, B₂ a quarter turn further, the difference d = p − q at equal shares t is known wherever it is looked at, and
+//! between two shares 1/N apart it leaves the line between by at most
 //!
 //! ```text
-//! p − q = (c − c₂) + cos x (A − A₂) + sin x (B − B₂) + t (h − h₂)          x = tσ
+//! max |d″| / (8 N²)          |d″| ≤ σ² (√(|A − A₂|² + |B − B₂|²) + R₂ |σ − σ₂|) + |σ² − σ₂²| R₂
 //! ```
 //!
-//! but for R₂ |σ − σ₂|, by which the second one is ahead or behind. Its first three terms are a part of an ellipse; cut into
-//! stretches 2δ, each lies in the triangle of its ends and of D + (cos m A + sin m B)/cos δ, m its middle, as a conic of
-//! positive weights does. The places that are stated need not say much about the centre for this to be small.
+//! since p″ = −σ² (cos σt A + sin σt B). Of a flat arc the places say little about the centre, and d is small all the same.
 
 use super::{Arc, Plane, Sense, TURN, direction, turned};
 use crate::geom::elementary;
 use crate::units::{MAX_AXES, Position};
 
-/// The most that a stretch turns whose triangle is taken, radians.
-const STRETCH: f64 = 0.25;
+/// The most that an arc turns between two places that are looked at, radians.
+const STRETCH: f64 = 0.125;
 
-/// The fewest stretches of an arc.
+/// At how many shares of an arc its distance from another is looked at, at least.
 const STRETCHES: f64 = 16.0;
 
 fn norm(a: [f64; 3]) -> f64 {
@@ -96,49 +95,35 @@ impl Arc {
         bound + 64.0 * f64::EPSILON * (scale + self.radius * self.sweep.abs())
     }
 
-    /// Centre, the radius to the start, that a quarter turn further, and the rise, in X Y Z.
-    fn parts(&self) -> [[f64; 3]; 4] {
+    /// The radius to the start and that a quarter turn further, in X Y Z.
+    fn radii(&self) -> [[f64; 3]; 2] {
         let (cos, sin) = (elementary::cos(self.angle), elementary::sin(self.angle));
-        let sign = self.sweep.signum();
-        let at = |u: f64, v: f64, w: f64| self.frame.global([u, v, w]);
-        let r = self.radius;
-        [
-            self.middle(),
-            at(r * cos, r * sin, 0.0),
-            at(-sign * r * sin, sign * r * cos, 0.0),
-            at(0.0, 0.0, self.rise()),
-        ]
+        let (sign, r) = (self.sweep.signum(), self.radius);
+        let out = |u: f64, v: f64| self.frame.global([u, v, 0.0]);
+        [out(r * cos, r * sin), out(-sign * r * sin, sign * r * cos)]
     }
 
     /// How far `other` is from this arc at most, mm, at equal shares of both: the second bound above, with some ulps for the
     /// rounding of three places' circle and its own. Their planes may differ.
     pub fn apart(&self, other: &Arc) -> f64 {
-        let (own, others) = (self.parts(), other.parts());
-        let [d, a, b, h]: [[f64; 3]; 4] =
-            std::array::from_fn(|k| std::array::from_fn(|i| own[k][i] - others[k][i]));
-        let sweep = self.sweep.abs();
+        let ([a, b], [a2, b2]) = (self.radii(), other.radii());
+        let less = |p: [f64; 3], q: [f64; 3]| norm(std::array::from_fn(|i| p[i] - q[i]));
+        let (sweep, sweep2, r2) = (self.sweep.abs(), other.sweep.abs(), other.radius);
+        let radial =
+            (less(a, a2) * less(a, a2) + less(b, b2) * less(b, b2)).sqrt() + r2 * (sweep - sweep2).abs();
+        let second = sweep * sweep * radial + (sweep * sweep - sweep2 * sweep2).abs() * r2;
         let count = (sweep / STRETCH).ceil().max(STRETCHES);
-        let delta = 0.5 * sweep / count;
-        let place = |x: f64, share: f64, by: f64| -> [f64; 3] {
-            let (cos, sin) = (elementary::cos(x) / by, elementary::sin(x) / by);
-            std::array::from_fn(|i: usize| -> f64 { d[i] + cos * a[i] + sin * b[i] + share * h[i] })
-        };
         let mut worst = 0.0f64;
-        for k in 0..count as usize {
-            let (from, to) = (k as f64 / count, (k + 1) as f64 / count);
-            let middle = 0.5 * (from + to) * sweep;
-            // The rise goes on within a stretch too, so that each corner has both of its ends.
-            for share in [from, to] {
-                worst = worst.max(norm(place(from * sweep, share, 1.0)));
-                worst = worst.max(norm(place(middle, share, elementary::cos(delta))));
-                worst = worst.max(norm(place(to * sweep, share, 1.0)));
-            }
+        for k in 0..=count as u32 {
+            let t = f64::from(k) / count;
+            let (p, q) = (self.eval(t), other.eval(t));
+            worst = worst.max(less([p[0], p[1], p[2]], [q[0], q[1], q[2]]));
         }
         let rest = (3..MAX_AXES).fold(0.0f64, |worst, i| {
             worst.max((self.start[i] - other.start[i]).abs()).max((self.end[i] - other.end[i]).abs())
         });
-        let ahead = other.radius * (sweep - other.sweep.abs()).abs();
-        let scale = self.radius + other.radius + norm(own[0]) + norm(others[0]);
-        worst + ahead + 2.0 * other.misfit + rest + 256.0 * f64::EPSILON * scale
+        let scale = self.radius + r2 + norm(self.middle()) + norm(other.middle());
+        let between = second / (8.0 * count * count);
+        worst + between + 2.0 * other.misfit + rest + 256.0 * f64::EPSILON * scale
     }
 }
