@@ -378,9 +378,9 @@ fn a_turn_more_or_less_is_refused() {
     assert_eq!(refused(helix, "sinumerik", "G3 X5", "G1 X5"), "arc-word");
     // Whether the turn of an end over its start is one of TURN's no page says.
     assert_eq!(refused(flat, "sinumerik", "X10 Y0 I5 J0 TURN=1", "X0 Y0 I5 J0 TURN=1"), "arc-turns");
-    // Of turns in one plane the path is the same, only not how often.
-    assert_eq!(refused(flat, "sinumerik", " TURN=1", ""), "less-than-asked");
-    assert_eq!(refused(flat, "heidenhain", "IPA+720", "IPA+360"), "less-than-asked");
+    // Of turns in one plane the path is the same, only not how often: what comes next is none of the arc.
+    assert_eq!(refused(flat, "sinumerik", " TURN=1", ""), "deviation-too-large");
+    assert_eq!(refused(flat, "heidenhain", "IPA+720", "IPA+360"), "deviation-too-large");
     assert_eq!(refused(flat, "heidenhain", "IPA+720", "IPA+1080"), "deviation-too-large");
     assert_eq!(refused(helix, "heidenhain", "IPA+990", "IPA+630"), "deviation-too-large");
 }
