@@ -34,10 +34,6 @@ use frame::direction;
 /// 2π.
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
-/// A plane that a rotation turned is one of the machine's where its axis is as near as this: what some products of rounded
-/// numbers leave open.
-const TURNED_SLACK: f64 = 1.0e-12;
-
 /// An arc or a helix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
@@ -152,10 +148,10 @@ impl Arc {
         self
     }
 
-    /// The same arc in a frame that is turned: `rotation` times each of its places in X Y Z. In a plane of that frame it is
-    /// an arc of that plane.
+    /// The same arc in a frame that is turned: `rotation` times each of its places in X Y Z. Where its axis is within `slack`
+    /// radians of one of that frame it is an arc of that plane, and its places are off by up to `slack` times its radius.
     #[must_use]
-    pub fn turned(&self, rotation: &[[f64; 3]; 3]) -> Arc {
+    pub fn turned(&self, rotation: &[[f64; 3]; 3], slack: f64) -> Arc {
         let out = |p: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|i| (0..3).map(|j| rotation[i][j] * p[j]).sum())
         };
@@ -166,7 +162,7 @@ impl Arc {
             place
         };
         let [.., axis] = self.frame.axes();
-        let Some((frame, along)) = Frame::about(out(axis), TURNED_SLACK) else { return *self };
+        let Some((frame, along)) = Frame::about(out(axis), slack) else { return *self };
         let [u, v, _] = frame.local(out(self.middle()));
         let (start, mut end) = (place(&self.start), place(&self.end));
         if let Some(plane) = frame.plane()
