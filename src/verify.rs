@@ -8,7 +8,7 @@
 //! | odd-even steps | lines | point by point, φ the identity on each segment | proved |
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
-//! | an arc | an arc, or lines | by its implicit form, φ the angle | proved |
+//! | an arc | arcs, or lines | by its implicit form or its three places, φ the angle | proved |
 //! | either | the control's own spline through points | the points only | points-only |
 //! | lines | lines | point by point | proved |
 //! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |

@@ -74,7 +74,8 @@
 //! | X Y Z A | a word left out stays |
 //! | F, SD, UPATH, SPLINEPATH | yes |
 //! | ORIVECT ORIAXES ORICURVE | yes, one group |
-//! | PL, PW, PO[…], A3 B3 C3, XH YH ZH | never |
+//! | G17 G18 G19 | yes; the plane of arcs |
+//! | PL, PW, PO[…], I J K, TURN, I1 J1 K1, A3 B3 C3, XH YH ZH | never |
 
 mod read;
 mod words;

@@ -229,7 +229,7 @@ impl Reader<'_> {
         }
         let [u, v, _] = circle.frame.local(circle.center);
         if self.program.stood() != self.program.axis() {
-            return self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
+            return self.turning_arc(span);
         }
         let (start, place) = (self.program.place(&start), self.program.place(&end));
         let mut arc = match Arc::new(circle.frame, circle.sense, start, place, [u, v]) {
@@ -265,6 +265,17 @@ impl Reader<'_> {
         self.program.arc(arc, feed, whole);
         let left = Left { tangent: arc.tangent(1.0), frame: circle.frame, at: end };
         self.pending = circle.by_axis.then_some(Pending::Left(left));
+    }
+
+    /// An arc in which the tool turns: how its direction goes along the arc no page says.
+    pub(super) fn turning_arc(&mut self, span: Span) {
+        let message =
+            "an arc in which the tool turns is not compiled: how it turns along the arc no page says";
+        self.push(
+            Diagnostic::refusal("arc-axis", message)
+                .at(span, "")
+                .hint("points on the arc say it, a GOTO with six numbers each"),
+        );
     }
 
     /// A line before an arc votes on its sense.
