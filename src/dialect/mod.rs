@@ -54,14 +54,8 @@ pub struct Dialect {
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
     pub round: Round,
-    /// What it has for an arc of a kind on a machine; where it has nothing, lines.
-    pub arc: fn(ArcKind, &Machine) -> Option<ArcWord>,
-    /// The most whole turns of one block.
-    pub most_turns: u32,
-    /// Whether it has words that choose the plane of an arc.
-    pub planes: bool,
-    /// Whether an arc can stand beside the words of the tool's direction.
-    pub directed_arcs: bool,
+    /// What its arcs take.
+    pub arcs: Arcs,
     /// The words of the three components of the tool's direction.
     pub direction: [&'static str; 3],
     /// The words of how the tool turns between two directions, in their plane or with the rotary axes evenly, where it has some.
@@ -146,6 +140,19 @@ pub struct NurbsRules {
     pub greatest_weight: f64,
     /// Whether the first weight is 1 because there is no place to write it.
     pub starts_with_one: bool,
+}
+
+/// What the arcs of a dialect take.
+#[derive(Clone, Copy)]
+pub struct Arcs {
+    /// What it has for an arc of a kind on a machine; where it has nothing, lines.
+    pub word: fn(ArcKind, &Machine) -> Option<ArcWord>,
+    /// The most whole turns of one block.
+    pub most_turns: u32,
+    /// Whether it has words that choose the plane of an arc.
+    pub planes: bool,
+    /// Whether an arc can stand beside the words of the tool's direction.
+    pub directed: bool,
 }
 
 /// What matters of an arc to the words that a control has for it.

@@ -66,13 +66,13 @@ impl WrittenArc {
                 let more = sweep(circle.sense, degrees).abs() / arc.sweep().abs() * arc.turns() - arc.turns();
                 Some(arc.with_turns(more.round().max(0.0) as u32))
             }
-            ArcBy::Way(way) => by_way(digits, &self.start, &way, &self.end),
+            ArcBy::Way(way) => by_way(*digits, &self.start, &way, &self.end),
         }
     }
 }
 
 /// The arc from `start` by `way` to `end`; none where they lie on a line.
-fn by_way(digits: &[u8; MAX_AXES], start: &Units, way: &Units, end: &Units) -> Option<Arc> {
+fn by_way(digits: [u8; MAX_AXES], start: &Units, way: &Units, end: &Units) -> Option<Arc> {
     let place = |units: &Units| -> Position { std::array::from_fn(|i| units_to_f64(units[i], digits[i])) };
     let flat = Plane::ALL.into_iter().find(|plane| {
         let [.., w] = plane.axes();
@@ -94,7 +94,7 @@ fn by_way(digits: &[u8; MAX_AXES], start: &Units, way: &Units, end: &Units) -> O
 /// None where they are too large for products of four of them: ways up to 2·10⁵ mm with six decimals make 10³⁴.
 fn ways<const N: usize>(
     axes: [usize; N],
-    digits: &[u8; MAX_AXES],
+    digits: [u8; MAX_AXES],
     s: &Units,
     p: &Units,
     e: &Units,
@@ -123,7 +123,7 @@ fn ways<const N: usize>(
 /// for that.
 fn through(
     plane: Plane,
-    digits: &[u8; MAX_AXES],
+    digits: [u8; MAX_AXES],
     s: &Units,
     p: &Units,
     e: &Units,
@@ -156,7 +156,7 @@ fn through(
 ///
 /// b, c, their squares and n are whole numbers. What is rounded behind them costs some ε R (|b| + |c|)/|b − c|, so that where
 /// p and e are the nearest of the three the same is done from e.
-fn in_space(digits: &[u8; MAX_AXES], s: &Units, p: &Units, e: &Units) -> Option<([f64; 3], [f64; 3])> {
+fn in_space(digits: [u8; MAX_AXES], s: &Units, p: &Units, e: &Units) -> Option<([f64; 3], [f64; 3])> {
     let (mut b, mut c, most) = ways([0, 1, 2], digits, s, p, e)?;
     // Below 2⁶¹ each, so that neither a difference of two products nor a sum of three squares is too large.
     let n = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
@@ -225,36 +225,36 @@ mod tests {
     #[test]
     fn three_places_make_a_circle() {
         let (s, p, e) = (at(10.0, 0.0, 1.0), at(5.0, 5.0, 1.0), at(0.0, 0.0, 1.0));
-        let found = through(Plane::Xy, &DIGITS, &s, &p, &e);
+        let found = through(Plane::Xy, DIGITS, &s, &p, &e);
         assert_eq!(found, Some((Sense::CounterClockwise, [5.0, 0.0])));
-        assert_eq!(through(Plane::Xy, &DIGITS, &e, &p, &s).map(|found| found.0), Some(Sense::Clockwise));
-        assert_eq!(through(Plane::Xy, &DIGITS, &s, &at(5.0, 0.0, 1.0), &e), None);
+        assert_eq!(through(Plane::Xy, DIGITS, &e, &p, &s).map(|found| found.0), Some(Sense::Clockwise));
+        assert_eq!(through(Plane::Xy, DIGITS, &s, &at(5.0, 0.0, 1.0), &e), None);
         // In Z X an arc from Z to X is counter-clockwise about Y; the axes may differ in their decimals.
         let mut digits = DIGITS;
         digits[2] = 3;
         let (s, p, e) = ([0, 0, 5_000, 0, 0, 0], [3_000_000, 0, 4_000, 0, 0, 0], [5_000_000, 0, 0, 0, 0, 0]);
-        assert_eq!(through(Plane::Zx, &digits, &s, &p, &e), Some((Sense::CounterClockwise, [0.0, 0.0])));
+        assert_eq!(through(Plane::Zx, digits, &s, &p, &e), Some((Sense::CounterClockwise, [0.0, 0.0])));
         // Larger than any machine: no overflow.
         let far = [i64::MAX / 2, i64::MAX / 3, 0, 0, 0, 0];
-        assert_eq!(through(Plane::Xy, &DIGITS, &[i64::MIN / 2; 6], &far, &[0; 6]), None);
-        assert_eq!(in_space(&DIGITS, &[i64::MIN / 2; 6], &far, &[0; 6]), None);
+        assert_eq!(through(Plane::Xy, DIGITS, &[i64::MIN / 2; 6], &far, &[0; 6]), None);
+        assert_eq!(in_space(DIGITS, &[i64::MIN / 2; 6], &far, &[0; 6]), None);
     }
 
     #[test]
     fn three_places_in_space_make_a_circle() {
         // Of the 3-4-5 triangle: u = (3, 0, 4)/5 and v = Y, so that w = (−4, 0, 3)/5, about (1, 2, 3) with R 5.
         let (s, p, e) = (at(4.0, 2.0, 7.0), at(1.0, 7.0, 3.0), at(-2.0, 2.0, -1.0));
-        let (normal, center) = in_space(&DIGITS, &s, &p, &e).unwrap();
+        let (normal, center) = in_space(DIGITS, &s, &p, &e).unwrap();
         assert_eq!(center, [1.0, 2.0, 3.0]);
         // Twice the area of the triangle, 50, along w.
         assert_eq!(normal, [-40.0, 0.0, 30.0]);
-        let arc = by_way(&DIGITS, &s, &p, &e).unwrap();
+        let arc = by_way(DIGITS, &s, &p, &e).unwrap();
         assert!((arc.radius() - 5.0).abs() < 1e-14 && (arc.sweep() - std::f64::consts::PI).abs() < 1e-15);
         let quarter = arc.eval(0.5);
         assert!((quarter[0] - 1.0).abs() < 1e-14 && (quarter[1] - 7.0).abs() < 1e-14, "{quarter:?}");
-        assert!(by_way(&DIGITS, &s, &at(1.0, 2.0, 3.0), &e).is_none(), "on a line");
+        assert!(by_way(DIGITS, &s, &at(1.0, 2.0, 3.0), &e).is_none(), "on a line");
         // Another place of the same circle, next to its end: (−24, 7)/25 of R, which lies in whole decimals.
-        let (normal, center) = in_space(&DIGITS, &s, &at(-1.88, 3.4, -0.84), &e).unwrap();
+        let (normal, center) = in_space(DIGITS, &s, &at(-1.88, 3.4, -0.84), &e).unwrap();
         assert!(
             normal[0] < 0.0 && (0..3).all(|i| (center[i] - [1.0, 2.0, 3.0][i]).abs() < 1e-14),
             "{center:?}"

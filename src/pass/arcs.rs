@@ -28,7 +28,7 @@ pub fn kind(arc: &Arc) -> ArcKind {
 /// nothing says that arcs go with that.
 pub fn word(arc: &Arc, machine: &Machine) -> Option<ArcWord> {
     let led = machine.axes.direction().is_some();
-    (machine.dialect.arc)(kind(arc), machine).filter(|_| !led || machine.orientation.arcs)
+    (machine.dialect.arcs.word)(kind(arc), machine).filter(|_| !led || machine.orientation.arcs)
 }
 
 /// The arcs that one block each takes.
@@ -37,12 +37,12 @@ pub fn blocks(arc: &Arc, word: ArcWord, machine: &Machine) -> Vec<Arc> {
         let share = |i: u32| f64::from(i) / n;
         (0..n as u32).map(|i| arc.part(share(i), share(i + 1))).collect()
     };
-    let most = machine.dialect.most_turns;
+    let most = machine.dialect.arcs.most_turns;
     match word {
         ArcWord::Way => parts((arc.sweep().abs() / MOST_BY_WAY - 1.0e-9).ceil().max(1.0)),
         ArcWord::Turn => arc.by_turns(most),
         ArcWord::Center if most == 1 => arc.by_turns(1),
-        ArcWord::Center => arc.by_turns(most).into_iter().flat_map(|arc| beside_start(arc)).collect(),
+        ArcWord::Center => arc.by_turns(most).into_iter().flat_map(beside_start).collect(),
     }
 }
 

@@ -120,15 +120,16 @@ fn form(decimals: &Decimals, curve: &Written, machine: &Machine) -> Result<usize
                 ArcBy::Center(Circle { plane, .. }, turns) => {
                     let [.., w] = plane.axes();
                     let helix = arc.start[w] != arc.end[w];
-                    (dialect.arc)(ArcKind { plane: Some(plane), helix, turns: turns != 0 }, machine).is_some()
+                    (dialect.arcs.word)(ArcKind { plane: Some(plane), helix, turns: turns != 0 }, machine)
+                        .is_some()
                 }
                 ArcBy::Way(_) => {
                     let flat = ArcKind { plane: None, helix: false, turns: false };
-                    (dialect.arc)(flat, machine) == Some(ArcWord::Way)
+                    (dialect.arcs.word)(flat, machine) == Some(ArcWord::Way)
                 }
                 ArcBy::Turn(Circle { plane, .. }, _) => {
                     let helix = ArcKind { plane: Some(plane), helix: true, turns: true };
-                    (dialect.arc)(helix, machine) == Some(ArcWord::Turn)
+                    (dialect.arcs.word)(helix, machine) == Some(ArcWord::Turn)
                 }
             };
             (dialect.motion_of(Form::Lines).filter(|_| taken), "arcs of this kind")

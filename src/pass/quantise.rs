@@ -270,7 +270,7 @@ impl Quantiser<'_> {
         let (start, end) = (self.start(&arc.start())?, self.point(&arc.end())?);
         let kind = super::arcs::kind(arc);
         let Some(plane) = arc.plane() else {
-            return match (self.machine.dialect.arc)(kind, self.machine) {
+            return match (self.machine.dialect.arcs.word)(kind, self.machine) {
                 Some(ArcWord::Way) => self.arc_by_way(arc, start, end),
                 Some(ArcWord::Center | ArcWord::Turn) | None => self.arc_in_lines(arc),
             };
@@ -285,7 +285,7 @@ impl Quantiser<'_> {
             return Ok(Written::Lines(WrittenPoints { start, stride, units, lines, rates }));
         }
         let kind = ArcKind { helix: start[w] != end[w], ..kind };
-        let word = (self.machine.dialect.arc)(kind, self.machine);
+        let word = (self.machine.dialect.arcs.word)(kind, self.machine);
         let center = [self.units(u, arc.center()[0])?, self.units(v, arc.center()[1])?];
         let circle = Circle { plane, sense: arc.sense(), center };
         let stated = WrittenArc { start, end, by: ArcBy::Center(circle, 0), line: 0 };

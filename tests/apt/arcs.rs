@@ -385,6 +385,32 @@ fn a_turn_more_or_less_is_refused() {
     assert_eq!(refused(helix, "heidenhain", "IPA+990", "IPA+630"), "deviation-too-large");
 }
 
+/// How an arc is cut into blocks is the text's to say: a turn a block is the same path.
+#[test]
+fn any_cut_of_an_arc_is_as_good() {
+    let machine = crate::support::machine("extends = \"sinumerik\"\n[text]\nnumber_step = 0\n");
+    let case = CASES.iter().find(|case| case.name == "two turns and three quarters of a helix").expect("it");
+    let text = program(case.system(), &case.text(), &machine).expect("a program").text;
+    let verified = |blocks: &str| {
+        let whole = "G17 G3 X5 Y5 Z-11 I5 J0 TURN=2\n";
+        assert!(text.contains(whole), "{text}");
+        let mut sources = Sources::new(Source::new("input.cl", case.text()));
+        let id = sources.push(Source::new("program", text.replacen(whole, blocks, 1)));
+        let language = front::find(case.system()).expect("a system");
+        let verified = verify_program(&sources, language, id, &machine, &Options::default());
+        verified.map(|verified| verified.report.deviation.mm).map_err(|errors| errors.0[0].id)
+    };
+    let turns = "G17 G3 X0 Y0 Z-4 I5 J0\nX0 Y0 Z-8 I5 J0\nX5 Y5 Z-11 I5 J0\n";
+    assert!(verified(turns).is_ok_and(|mm| mm < 1e-9));
+    assert!(verified("G17 G3 X10 Y0 Z-6 I5 J0 TURN=1\nX5 Y5 Z-11 I-5 J0 TURN=1\n").is_ok_and(|mm| mm < 1e-9));
+    // Another pitch for a while, a part too few, and one the other way round.
+    let faster = "G17 G3 X0 Y0 Z-4.1 I5 J0\nX0 Y0 Z-8 I5 J0\nX5 Y5 Z-11 I5 J0\n";
+    assert_eq!(verified(faster), Err("deviation-too-large"));
+    assert_eq!(verified("G17 G3 X0 Y0 Z-4 I5 J0\nX0 Y0 Z-8 I5 J0\n"), Err("deviation-too-large"));
+    let back = "G17 G3 X0 Y0 Z-4 I5 J0\nG2 X0 Y0 Z-8 I5 J0\nG3 X5 Y5 Z-11 I5 J0\n";
+    assert_eq!(verified(back), Err("arc-differs"));
+}
+
 #[test]
 fn a_place_on_the_way_makes_an_arc() {
     let machine = Machine::built_in("sinumerik").expect("sinumerik");

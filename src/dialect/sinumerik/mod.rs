@@ -81,7 +81,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
@@ -132,17 +132,19 @@ pub const DIALECT: Dialect = Dialect {
     ],
     inverse_time: false,
     round: Round::Shortest,
-    // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
-    // no plane; it has no helices.
-    arc: |kind, machine| match kind.plane {
-        Some(Plane::Xy) => Some(ArcWord::Center),
-        Some(Plane::Zx | Plane::Yz) if takes_planes(machine) => Some(ArcWord::Center),
-        Some(Plane::Zx | Plane::Yz) | None => (!kind.helix).then_some(ArcWord::Way),
+    arcs: Arcs {
+        // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
+        // no plane; it has no helices.
+        word: |kind, machine| match kind.plane {
+            Some(Plane::Xy) => Some(ArcWord::Center),
+            Some(Plane::Zx | Plane::Yz) if takes_planes(machine) => Some(ArcWord::Center),
+            Some(Plane::Zx | Plane::Yz) | None => (!kind.helix).then_some(ArcWord::Way),
+        },
+        // TURN= is 0 to 999.
+        most_turns: 999,
+        planes: true,
+        directed: true,
     },
-    // TURN= is 0 to 999.
-    most_turns: 999,
-    planes: true,
-    directed_arcs: true,
     direction: ["A3=", "B3=", "C3="],
     turn: Some(["ORIVECT", "ORIAXES"]),
     second_curve: true,

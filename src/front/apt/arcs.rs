@@ -221,11 +221,18 @@ impl Reader<'_> {
         };
         let feed = self.feed;
         let Some(feed) = self.per_minute(feed, whole) else { return };
-        let ([su, sv, _], [eu, ev, height]) = (circle.frame.local(start), circle.frame.local(end));
+        let ([su, sv, sw], [eu, ev, height]) = (circle.frame.local(start), circle.frame.local(end));
         let chord = ((eu - su) * (eu - su) + (ev - sv) * (ev - sv)).sqrt();
         let mut end = end;
         if chord < FULL_CHORD {
-            end = circle.frame.global([su, sv, height]);
+            // Over the start, in a tilted plane to the last bit too where it does not rise.
+            end = match circle.frame.plane() {
+                Some(_) => circle.frame.global([su, sv, height]),
+                None => {
+                    let [.., rise] = circle.frame.axes().map(|axis| axis.map(|x| x * (height - sw)));
+                    std::array::from_fn(|i| start[i] + rise[i])
+                }
+            };
         }
         let [u, v, _] = circle.frame.local(circle.center);
         if self.program.stood() != self.program.axis() {

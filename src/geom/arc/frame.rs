@@ -90,7 +90,7 @@ impl Frame {
                 return Some((plane.into(), 0.0 < w[along]));
             }
         }
-        let least = if w[0].abs() <= w[1].abs() { 0 } else { 1 };
+        let least = usize::from(w[1].abs() < w[0].abs());
         let least = if w[2].abs() < w[least].abs() { 2 } else { least };
         let u = unit(cross(std::array::from_fn(|i| f64::from(u8::from(i == least))), w))?;
         Some((Frame { plane: None, axes: [u, cross(w, u), w] }, true))

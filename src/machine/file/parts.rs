@@ -187,7 +187,7 @@ impl Reader {
         base: Option<&Machine>,
     ) -> Option<bool> {
         if let Some(planes) = file.planes.as_ref().filter(|planes| *planes.get_ref())
-            && !dialect.planes
+            && !dialect.arcs.planes
         {
             let message = format!("{} has no words that choose the plane of an arc", dialect.name);
             self.error("arc-planes", message, planes.span());
@@ -228,7 +228,7 @@ impl Reader {
             self.error("second-curve", message, second.span());
         }
         if let Some(arcs) = file.arcs.as_ref().filter(|arcs| *arcs.get_ref())
-            && !dialect.directed_arcs
+            && !dialect.arcs.directed
         {
             let message =
                 format!("in {} the words of the tool's direction are those of an arc's centre", dialect.name);

@@ -146,11 +146,11 @@ pub(super) const CASES: &[Case] = &[
         // In six decimals its axis is not quite square to the chord: the arc rises by some 1e-5 mm.
         name: "half a circle about an axis that was rounded",
         start: [0.0, 0.0, 0.0],
-        center: [7.071068, 7.071068, 0.0],
-        axis: [0.707107, -0.707106, 0.0],
-        end: [14.142136, 14.142136, 0.0],
+        center: [8.660_254, 5.0, 0.0],
+        axis: [0.5, -0.866_026, 0.0],
+        end: [17.320_508, 10.0, 0.0],
         sweep: 180.0,
-        words: ["CIP X14.142136 Y14.142136 Z0 I1=AC(7.07", "L X", "X0.0"],
+        words: ["CIP X17.320508 Y10 Z0 I1=AC(8.66", "L X", "X0.0"],
     },
     Case {
         name: "two turns and three quarters of a helix",

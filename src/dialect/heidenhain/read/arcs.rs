@@ -103,7 +103,7 @@ impl Reader<'_, '_> {
             return self.assembler.error("helix", "CP ends by IPA and IZ and does not move at rapid", head);
         }
         let forth = if sense == Sense::CounterClockwise { Some(turn) } else { turn.times(-1) };
-        let most = Decimal::new(360 * i64::from(self.assembler.machine.dialect.most_turns), 0);
+        let most = Decimal::new(360 * i64::from(self.assembler.machine.dialect.arcs.most_turns), 0);
         let Some(degrees) = forth.filter(|d| d.compare(Decimal::ZERO).is_gt() && d.compare(most).is_le())
         else {
             let message = format!("IPA has the sign of DR, and turns by {most} degrees at most");

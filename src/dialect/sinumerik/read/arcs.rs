@@ -30,7 +30,7 @@ impl Reader<'_> {
 
     /// TURN: whole turns before the way to the end.
     pub(super) fn turn(&mut self, value: Decimal, range: Range<usize>, block: &mut Block) {
-        let most = self.assembler.machine.dialect.most_turns;
+        let most = self.assembler.machine.dialect.arcs.most_turns;
         let turns = value.units(0).and_then(|turns| u32::try_from(turns).ok()).filter(|turns| *turns <= most);
         match turns {
             None => {
