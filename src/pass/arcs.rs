@@ -18,9 +18,12 @@ const OVER: f64 = 0.01;
 /// it always has some.
 const FLAT: f64 = 0.002;
 
+/// The rise, mm, below which an arc in a plane of the machine is flat: what a turned frame leaves of none.
+const ROUNDED: f64 = 1.0e-9;
+
 /// What kind of arc this is to the words of a control.
 pub fn kind(arc: &Arc) -> ArcKind {
-    let slack = if arc.plane().is_some() { 0.0 } else { FLAT };
+    let slack = if arc.plane().is_some() { ROUNDED } else { FLAT };
     ArcKind { plane: arc.plane(), helix: slack < arc.rise().abs(), turns: 1.0 + 1.0e-9 < arc.turns() }
 }
 

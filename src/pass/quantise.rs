@@ -292,7 +292,8 @@ impl Quantiser<'_> {
         let once = stated.arc(&self.digits).ok_or(Unwritable)?;
         let turns = (arc.turns() - once.turns()).round().max(0.0) as u32;
         match word.map(|word| if loose { ArcWord::Turn } else { word }) {
-            None | Some(ArcWord::Center) => {
+            None => self.arc_in_lines(arc),
+            Some(ArcWord::Center) => {
                 self.arrive(&end);
                 Ok(Written::Arc(WrittenArc { by: ArcBy::Center(circle, turns), ..stated }))
             }
