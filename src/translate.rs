@@ -18,6 +18,7 @@
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
+use crate::dialect::frame::with_named_axes;
 use crate::geom::bezier::Bezier;
 use crate::ir::{
     Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
@@ -28,15 +29,20 @@ use crate::source::{SourceId, Span};
 use crate::units::{Axes, Axis, Kind, MAX_AXES, Position};
 use crate::verify::{to_arc, to_nurbs};
 
-/// What a program for `machine` asks for.
+/// The machine as a program for it wants it: with the axes that its header names, and with a direction of the tool where it
+/// leads the tip.
+pub fn machine_of(text: &str, machine: &Machine) -> Machine {
+    let machine = machine.clone().for_program(text);
+    with_named_axes(text, &machine).unwrap_or(machine)
+}
+
+/// Whether a program is whole; what to know of one that is.
 ///
 /// # Errors
-/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
-/// parameters.
-pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
-    let Warned { value: reading, mut warnings } = reading;
-    let decimals = &reading.decimals;
-    let steps = &decimals.program.steps;
+/// It has no move, or no end.
+pub fn is_whole(reading: &Reading, machine: &Machine) -> Result<Diagnostics, Diagnostics> {
+    let mut warnings = Diagnostics::new();
+    let steps = &reading.decimals.program.steps;
     if !reading.header {
         let message = format!("the program does not start with the lines of machine `{}`", machine.name);
         warnings.push(
@@ -55,8 +61,20 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
             .hint("it may have been cut off")
             .into());
     }
-    let used = used_axes(decimals);
-    let kept: Vec<usize> = (0..decimals.program.axes.count()).filter(|i| used[*i]).collect();
+    Ok(warnings)
+}
+
+/// What a program for `machine` asks for.
+///
+/// # Errors
+/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
+/// parameters.
+pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
+    let Warned { value: reading, mut warnings } = reading;
+    let decimals = &reading.decimals;
+    let steps = &decimals.program.steps;
+    warnings.extend(is_whole(&reading, machine)?);
+    let kept = moved_axes(decimals);
     let own: Vec<(Axis, Kind)> =
         kept.iter().map(|i| (decimals.program.axes.name(*i), decimals.program.axes.kind(*i))).collect();
     let Some(axes) = Axes::new(&own) else {
@@ -86,11 +104,13 @@ fn own_remarks(remarks: &[String]) -> impl Iterator<Item = &String> {
     remarks[last.map_or(0, |last| last + 1)..].iter()
 }
 
-/// Which axes a program moves; X, Y and Z count as moved.
-fn used_axes(decimals: &Decimals) -> [bool; MAX_AXES] {
+/// Which axes a program moves; X, Y, Z and the direction of a tool whose tip is led count as moved.
+pub fn moved_axes(decimals: &Decimals) -> Vec<usize> {
     let axes = decimals.program.axes;
-    let mut used: [bool; MAX_AXES] =
-        std::array::from_fn(|i| i < axes.count() && ["X", "Y", "Z"].contains(&axes.name(i).as_str()));
+    let counts = |i: usize| {
+        ["X", "Y", "Z"].contains(&axes.name(i).as_str()) || axes.kind(i) == Kind::Direction
+    };
+    let mut used: [bool; MAX_AXES] = std::array::from_fn(|i| i < axes.count() && counts(i));
     for located in &decimals.program.steps {
         match &located.step {
             Step::Rapid(targets) => targets.iter().for_each(|(axis, _)| used[*axis] = true),
@@ -107,11 +127,11 @@ fn used_axes(decimals: &Decimals) -> [bool; MAX_AXES] {
             | Step::Auxiliary(_) => {}
         }
     }
-    used
+    (0..axes.count()).filter(|i| used[*i]).collect()
 }
 
 /// Which axes a path moves.
-fn moved(written: &Written) -> [bool; MAX_AXES] {
+pub(crate) fn moved(written: &Written) -> [bool; MAX_AXES] {
     let mut moves = [false; MAX_AXES];
     let mut see = |start: &[i64; MAX_AXES], other: &[i64; MAX_AXES]| {
         (0..MAX_AXES).for_each(|i| moves[i] |= start[i] != other[i]);
@@ -258,5 +278,6 @@ impl Translation<'_> {
 /// The machine cannot read it, or see [`intent`].
 pub fn parse(sources: &crate::source::Sources, machine: &Machine) -> Result<Intent, Diagnostics> {
     let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
-    intent((machine.dialect.read)(text, SourceId::INPUT, machine)?, machine)
+    let machine = machine_of(text, machine);
+    intent((machine.dialect.read)(text, SourceId::INPUT, &machine)?, &machine)
 }

@@ -8,7 +8,7 @@
 mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Shift, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Shift, Step};
 use crate::machine::Machine;
 use crate::units::{Axes, Axis, DEGREES, Kind};
 
@@ -31,7 +31,11 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
         }
     }
     let machine = machine.with_axes(&intent.program.axes)?;
-    tip::lead(&mut intent, &machine)?;
+    // A program that was written before leads it already.
+    let led = |located: &Located<f64, Curve>| located.step == Step::Auxiliary(Auxiliary::TipControl);
+    if !intent.program.steps.iter().any(led) {
+        tip::lead(&mut intent, &machine)?;
+    }
     homes(&mut intent, &machine);
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
