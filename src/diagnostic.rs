@@ -9,7 +9,8 @@
 //!  "end_line":3,"end_column":5,"label":"…","hints":["…"]}
 //! ```
 //!
-//! Columns count characters from 1; `file` to `label` are null where a diagnostic has no place.
+//! Columns count characters from 1; `file` to `label` are null where a diagnostic has no place. Where more than one place belongs
+//! to it, as in two programs that differ, `others` has them: `[{"file":"b.h","line":7,…,"label":"…"}]`.
 
 use crate::source::{LineColumn, Sources, Span};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -43,6 +44,8 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// What is there; may be shorter than the message, since it points.
     pub label: String,
+    /// Other places that belong to it, in any text, and what is there.
+    pub others: Vec<(Span, String)>,
     /// What to do.
     pub hints: Vec<String>,
 }
@@ -55,6 +58,7 @@ impl Diagnostic {
             message: message.into(),
             span: None,
             label: String::new(),
+            others: Vec::new(),
             hints: Vec::new(),
         }
     }
@@ -84,6 +88,13 @@ impl Diagnostic {
     pub fn at(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
         self.span = Some(span);
         self.label = label.into();
+        self
+    }
+
+    /// Points at another place too.
+    #[must_use]
+    pub fn and_at(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
+        self.others.push((span, label.into()));
         self
     }
 
@@ -126,6 +137,18 @@ struct JsonLine<'a> {
     end_column: Option<usize>,
     label: Option<&'a str>,
     hints: &'a [String],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    others: Vec<JsonPlace<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonPlace<'a> {
+    file: &'a str,
+    line: usize,
+    column: usize,
+    end_line: usize,
+    end_column: usize,
+    label: &'a str,
 }
 
 impl Diagnostics {
@@ -175,13 +198,17 @@ impl Diagnostics {
             let mut group = annotate_snippets::Group::with_title(
                 level.primary_title(diagnostic.message.as_str()).id(diagnostic.id),
             );
-            if let Some((span, source)) = diagnostic.span.and_then(|s| Some((s, sources.get(s.source)?))) {
+            let first = diagnostic.span.map(|span| (span, &diagnostic.label));
+            let others = diagnostic.others.iter().map(|(span, label)| (*span, label));
+            for (i, (span, label)) in first.into_iter().chain(others).enumerate() {
+                let Some(source) = sources.get(span.source) else { continue };
                 let (window, first_line, range) = window(&source.text, span);
                 // A carriage return would be drawn; a blank in its place moves nothing.
                 let window = window.replace('\r', " ");
-                let mut annotation = AnnotationKind::Primary.span(range);
-                if !diagnostic.label.is_empty() {
-                    annotation = annotation.label(diagnostic.label.as_str());
+                let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
+                let mut annotation = kind.span(range);
+                if !label.is_empty() {
+                    annotation = annotation.label(label.as_str());
                 }
                 group = group.element(
                     Snippet::source(window)
@@ -217,12 +244,27 @@ impl Diagnostics {
                 end_column: end.map(|at| at.column),
                 label: place.map(|_| diagnostic.label.as_str()),
                 hints: &diagnostic.hints,
+                others: diagnostic.others.iter().filter_map(|(span, label)| json_place(*span, label, sources)).collect(),
             };
             text.push_str(&serde_json::to_string(&line).unwrap_or_default());
             text.push('\n');
         }
         text
     }
+}
+
+fn json_place<'a>(span: Span, label: &'a str, sources: &'a Sources) -> Option<JsonPlace<'a>> {
+    let source = sources.get(span.source)?;
+    let start = LineColumn::of(&source.text, span.start as usize);
+    let end = LineColumn::of(&source.text, span.end as usize);
+    Some(JsonPlace {
+        file: &source.name,
+        line: start.line,
+        column: start.column,
+        end_line: end.line,
+        end_column: end.column,
+        label,
+    })
 }
 
 /// The lines around a span, so that a gigabyte is not scanned for one message; a line longer than any screen is cut.

@@ -29,6 +29,7 @@
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
+//! | [`diff`] | two programs beside each other |
 //! | [`map`] | which lines of the input each block came from |
 //! | [`points`] | the table of interpolated points |
 //! | [`simulate`] | the path as a control would run it |
@@ -38,6 +39,7 @@
 pub mod decimal;
 pub mod diagnostic;
 pub mod dialect;
+pub mod diff;
 pub mod dump;
 pub mod front;
 pub mod geom;

@@ -26,7 +26,7 @@ mod logarithmic;
 mod report;
 mod splined;
 
-pub use arcs::to_arc;
+pub use arcs::{spelled_auxiliary, to_arc};
 
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};

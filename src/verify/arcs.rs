@@ -121,15 +121,7 @@ impl Cursor<'_> {
 
     /// Meets a switch, or a dwell in seconds.
     pub(super) fn auxiliary(&mut self, asked: &Auxiliary<f64>, digits: u8) -> Result<(), Diagnostics> {
-        let what = match asked {
-            Auxiliary::CoolantStop => "the end of the coolant".to_owned(),
-            Auxiliary::SpindleStop => "the spindle's stop".to_owned(),
-            Auxiliary::Stop => "a stop of the program".to_owned(),
-            Auxiliary::OptionalStop => "an optional stop".to_owned(),
-            Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
-            Auxiliary::TipControl => "that the tip is led".to_owned(),
-            Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
-        };
+        let what = spelled_auxiliary(asked);
         let rounded = asked.try_map(|seconds| Decimal::round(seconds, digits));
         self.meet(&what, |step| matches!(step, Step::Auxiliary(read) if Some(*read) == rounded))
     }
@@ -141,5 +133,18 @@ fn found(asked: &Arc, mm: f64, blocks: usize) -> Found {
         path_blocks: blocks,
         cutting_length: asked.length(),
         ..Found::new()
+    }
+}
+
+/// A switch or a dwell in words.
+pub fn spelled_auxiliary(auxiliary: &Auxiliary<f64>) -> String {
+    match auxiliary {
+        Auxiliary::CoolantStop => "the end of the coolant".to_owned(),
+        Auxiliary::SpindleStop => "the spindle's stop".to_owned(),
+        Auxiliary::Stop => "a stop of the program".to_owned(),
+        Auxiliary::OptionalStop => "an optional stop".to_owned(),
+        Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
+        Auxiliary::TipControl => "that the tip is led".to_owned(),
+        Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
     }
 }

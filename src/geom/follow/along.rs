@@ -39,7 +39,7 @@ impl Stand {
     }
 
     /// The length up to t.
-    fn length(&self, t: f64) -> f64 {
+    pub(super) fn length(&self, t: f64) -> f64 {
         let x = t * PLACES as f64;
         let k = (x as usize).min(PLACES - 1);
         self.lengths[k] + (x - k as f64) * (self.lengths[k + 1] - self.lengths[k])

@@ -25,6 +25,8 @@ pub struct Meeting {
     pub at: [usize; 2],
     /// From where to where of its piece each part goes.
     pub part: [[f64; 2]; 2],
+    /// How long the first of them is, mm.
+    pub length: f64,
     /// An upper bound on the distance, mm.
     pub distance: f64,
     /// An upper bound on the difference in each coordinate.
@@ -170,8 +172,9 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
         (bounds.distance.min(tip), bounds.axes, turn)
     }
 
-    fn meeting(&self, part: [[f64; 2]; 2], (distance, axes, turn): (f64, Position, f64)) -> Meeting {
-        Meeting { at: [self.p.at(), self.c.at()], part, distance, axes, turn, alike: false }
+    fn meeting(&self, part: [[f64; 2]; 2], length: f64, found: (f64, Position, f64)) -> Meeting {
+        let (distance, axes, turn) = found;
+        Meeting { at: [self.p.at(), self.c.at()], part, length, distance, axes, turn, alike: false }
     }
 
     /// Whether both have parted.
@@ -235,7 +238,8 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
             [self.p.share(from(&self.p.stand), 1.0), [1.0, 1.0]]
         };
         let found = self.bound(&p, &c);
-        let mut meeting = self.meeting(part, found);
+        let length = if p_waits { 0.0 } else { self.p.stand.as_ref().map_or(0.0, Stand::rest) };
+        let mut meeting = self.meeting(part, length, found);
         // Who waits stands at the end of the piece before.
         if p_waits {
             meeting.at[0] = self.p.last.0;
@@ -270,15 +274,16 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Iterator for Stream
         if whole && own.piece == other.piece {
             let part = [self.p.share(0.0, 1.0), self.c.share(0.0, 1.0)];
             let meeting =
-                Meeting { alike: true, ..self.meeting(part, (0.0, [0.0; MAX_AXES], 0.0)) };
+                Meeting { alike: true, ..self.meeting(part, own.rest(), (0.0, [0.0; MAX_AXES], 0.0)) };
             self.go(1.0, 1.0);
             return Some(meeting);
         }
         let (to_p, to_c) = together(own, other, self.rule.tolerance);
         let (p, c) = (own.part(to_p), other.part(to_c));
         let part = [self.p.share(own.t, to_p), self.c.share(other.t, to_c)];
+        let length = own.length(to_p) - own.length(own.t);
         let found = self.bound(&p, &c);
-        let meeting = self.meeting(part, found);
+        let meeting = self.meeting(part, length, found);
         if self.parted(&meeting)
             && self.stretch.is_none()
             && let Some(stretch) = self.joint()
