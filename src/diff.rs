@@ -51,7 +51,7 @@ pub enum Origin {
 /// What the command line may say beside both programs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// mm; none: the greater of what both say.
+    /// mm; none: what both say together, since each may be so far from what was asked.
     pub tolerance: Option<f64>,
     /// The radius at which rotary axes count, mm; none: a degree counts as a millimetre.
     pub radius: Option<f64>,
@@ -160,7 +160,7 @@ pub fn compare(
     // An input goes where the other's machine does: to its homes, with its axes' names.
     place(&mut first, &second)?;
     place(&mut second, &first)?;
-    let tolerance = options.tolerance.unwrap_or(first.tolerance().max(second.tolerance()));
+    let tolerance = options.tolerance.unwrap_or(first.tolerance() + second.tolerance());
     let radius = options.radius.or(first.radius()).or(second.radius()).unwrap_or(DEGREES);
     let turn = first.turn().max(second.turn());
     let rule = Scale { tolerance, turn, radius };
@@ -168,18 +168,16 @@ pub fn compare(
     let (text_a, text_b) = (text(a), text(b));
     let own = side(&first, &second, (&text_a, SourceId::INPUT), radius)?;
     let other = side(&second, &first, (&text_b, SourceId::INPUT.behind(count)), radius)?;
-    let found = match other.ordered(&own.axes) {
-        Err(message) => {
-            let mut found = Found::new();
-            found.differs(Diagnostic::refusal("axes-differ", message));
-            found
-        }
-        Ok(other) => {
-            let found = Walk::new(&own, &other, rule).run();
-            // A map that runs the other way may be better.
-            let back = if found.is_same() { None } else { Some(Walk::new(&other, &own, rule).run()) };
-            back.filter(Found::is_same).map_or(found, Found::swapped)
-        }
+    let found = if let Some(diagnostic) = own.has_other_axes(&other).or(other.has_other_axes(&own)) {
+        let mut found = Found::new();
+        found.differs(diagnostic);
+        found
+    } else {
+        let other = other.ordered(&own.axes);
+        let found = Walk::new(&own, &other, rule).run();
+        // A map that runs the other way may be better.
+        let back = if found.is_same() { None } else { Some(Walk::new(&other, &own, rule).run()) };
+        back.filter(Found::is_same).map_or(found, Found::swapped)
     };
     let names = [a, b].map(|sources| sources.get(SourceId::INPUT).map_or(String::new(), |s| s.name.clone()));
     let figures = Figures::new(&found, names, [from_a, from_b], tolerance, own.axes.direction().is_some());

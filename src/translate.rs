@@ -12,8 +12,8 @@
 //! | the lines and remarks round the program | nothing: they are the other machine's affair |
 //!
 //! Axes that the program never moves are left out, X, Y and Z excepted. F is taken as the speed along the linear axes; where
-//! the machine counts rotary axes in it, a program that turns one is refused. So is one that leads the tool's tip: its reader
-//! needs the input to know the tool's direction.
+//! the machine counts rotary axes in it, a program that turns one is refused. A program that leads the tool's tip has its lines
+//! for it, so that nothing is added on the way to safe height and back.
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -74,7 +74,10 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
     let decimals = &reading.decimals;
     let steps = &decimals.program.steps;
     warnings.extend(is_whole(&reading, machine)?);
-    let kept = moved_axes(decimals);
+    let own = decimals.program.axes;
+    let moved = moved_axes(decimals);
+    let space = |i: &usize| ["X", "Y", "Z"].contains(&own.name(*i).as_str());
+    let kept: Vec<usize> = (0..own.count()).filter(|i| moved.contains(i) || space(i)).collect();
     let own: Vec<(Axis, Kind)> =
         kept.iter().map(|i| (decimals.program.axes.name(*i), decimals.program.axes.kind(*i))).collect();
     let Some(axes) = Axes::new(&own) else {
@@ -104,13 +107,10 @@ fn own_remarks(remarks: &[String]) -> impl Iterator<Item = &String> {
     remarks[last.map_or(0, |last| last + 1)..].iter()
 }
 
-/// Which axes a program moves; X, Y, Z and the direction of a tool whose tip is led count as moved.
+/// Which axes a program moves, in order; where it leads the tip of the tool, all of them.
 pub fn moved_axes(decimals: &Decimals) -> Vec<usize> {
     let axes = decimals.program.axes;
-    let counts = |i: usize| {
-        ["X", "Y", "Z"].contains(&axes.name(i).as_str()) || axes.kind(i) == Kind::Direction
-    };
-    let mut used: [bool; MAX_AXES] = std::array::from_fn(|i| i < axes.count() && counts(i));
+    let mut used = [axes.direction().is_some(); MAX_AXES];
     for located in &decimals.program.steps {
         match &located.step {
             Step::Rapid(targets) => targets.iter().for_each(|(axis, _)| used[*axis] = true),

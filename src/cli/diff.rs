@@ -31,7 +31,7 @@ pub(crate) struct Diff {
     /// The same for the second program alone
     #[arg(long, value_name = "LANGUAGE|MACHINE")]
     from_b: Option<String>,
-    /// Tolerance in mm, instead of the greater of both machines' or inputs'
+    /// Tolerance in mm, instead of what both machines or inputs allow together
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
     /// The radius at which rotary axes count; without it a degree counts as a millimetre

@@ -339,22 +339,32 @@ impl<'a> Side<'a> {
         Span::new(self.id, start..end)
     }
 
-    /// The same with the axes in another order.
-    ///
-    /// # Errors
-    /// Which axis one has and the other has not, or counts in another way.
-    pub(super) fn ordered(mut self, axes: &Axes) -> Result<Side<'a>, String> {
-        let mut order = Vec::new();
-        for (axis, kind) in axes.as_slice() {
-            match self.axes.index_of(*axis) {
-                Some(own) if self.axes.kind(own) == *kind => order.push(own),
-                Some(_) => return Err(format!("{axis} is a linear axis in the one and turns in the other")),
-                None => return Err(format!("{axis} moves in one of the programs only")),
-            }
-        }
-        if let Some((axis, _)) = self.axes.as_slice().iter().find(|(axis, _)| axes.index_of(*axis).is_none()) {
-            return Err(format!("{axis} moves in one of the programs only"));
-        }
+    /// What is wrong where it moves an axis that the other does not, or counts it in another way.
+    pub(super) fn has_other_axes(&self, other: &Side<'_>) -> Option<Diagnostic> {
+        let (axis, kind) = self.axes.as_slice().iter().enumerate().find_map(|(i, (axis, kind))| {
+            let known = other.axes.index_of(*axis).map(|i| other.axes.kind(i));
+            (known != Some(*kind)).then_some((i, known))
+        })?;
+        let name = self.axes.name(axis);
+        let message = match kind {
+            None => format!("{name} moves in one of the programs only"),
+            Some(_) => format!("{name} is a linear axis in one of the programs and turns in the other"),
+        };
+        let moves = |item: &&Item<'_>| match item {
+            Item::Switch(..) => false,
+            Item::Rapid(to, _) => to[axis].is_some(),
+            Item::Path(_) | Item::Points(..) => true,
+        };
+        let diagnostic = Diagnostic::refusal("axes-differ", message);
+        Some(match self.items.iter().find(moves) {
+            Some(item) => diagnostic.at(self.place_of(item), format!("{name} moves here")),
+            None => diagnostic,
+        })
+    }
+
+    /// The same with the axes in the order of the other, which has the same.
+    pub(super) fn ordered(mut self, axes: &Axes) -> Side<'a> {
+        let order: Vec<usize> = axes.as_slice().iter().filter_map(|(axis, _)| self.axes.index_of(*axis)).collect();
         for item in &mut self.items {
             match item {
                 Item::Switch(Step::Home(axis), _) => *axis = axes.index_of(self.axes.name(*axis)).unwrap_or(*axis),
@@ -372,7 +382,7 @@ impl<'a> Side<'a> {
             order.iter().enumerate().for_each(|(i, own)| digits[i] = old[*own]);
         }
         self.axes = *axes;
-        Ok(self)
+        self
     }
 }
 
