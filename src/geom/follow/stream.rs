@@ -3,11 +3,12 @@
 //! [`follow`](super::follow) bounds two paths as a whole. Here each part of the one that meets a part of the other has a bound of its
 //! own, so that it can be said where they part; and only as many pieces are held as are looked at.
 //!
-//! Where they part, both are searched for the next joint that they share, followed by another one: there they go on together.
-//! The stretch before it is run along as a path of its own. Without such a joint both go on as they would.
+//! Where they part, both are searched for the next joint that they share, followed by another one, or else for a joint of the
+//! one on a piece of the other: there they go on together. The stretch before it is run along as a path of its own. Without
+//! such a joint both go on as they would.
 
 use super::along::{Stand, is_straight, together};
-use super::{Bounds, ROUNDING, distance, interval, tamed};
+use super::{Bounds, ROUNDING, distance, foot, interval, tamed};
 use crate::geom::bezier::Bezier;
 use crate::units::{MAX_AXES, Position};
 use std::collections::VecDeque;
@@ -15,8 +16,11 @@ use std::collections::VecDeque;
 /// How many pieces of each path are searched for a joint that both share.
 const LOOK: usize = 256;
 
+/// The same where a joint of the one is looked for inside the pieces of the other.
+const NEAR: usize = 48;
+
 /// How often such a joint is looked for in vain.
-const SEARCHES: usize = 1000;
+const SEARCHES: usize = 200;
 
 /// A part of each path, and how far they are from each other.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +55,7 @@ pub struct Rule {
 /// A path and the pieces that were looked at.
 struct Ahead<I> {
     rest: std::iter::Enumerate<I>,
-    held: VecDeque<(usize, Bezier, [f64; 2])>,
+    held: Held,
     stand: Option<Stand>,
     /// Where it ends, and which piece that was, once nothing is left.
     last: (usize, Position),
@@ -78,6 +82,21 @@ impl<I: Iterator<Item = Bezier>> Ahead<I> {
                 let of = [k as f64 / count, (k + 1) as f64 / count];
                 self.held.push_back((at, *part, of));
             }
+        }
+    }
+
+    /// Cuts a piece that is held in two.
+    fn cut(&mut self, index: usize, t: f64) {
+        let Some((at, piece, [from, to])) = self.held.get(index).copied() else { return };
+        let stands = if index == 0 { self.stand.as_ref().map_or(0.0, |stand| stand.t) } else { 0.0 };
+        let middle = from + t * (to - from);
+        let first = piece.segment(0.0, t);
+        self.held[index] = (at, first, [from, middle]);
+        self.held.insert(index + 1, (at, piece.segment(t, 1.0), [middle, to]));
+        if index == 0 && self.stand.is_some() {
+            let mut stand = Stand::new(first);
+            stand.t = (stands / t).min(1.0);
+            self.stand = Some(stand);
         }
     }
 
@@ -114,6 +133,47 @@ impl<I: Iterator<Item = Bezier>> Ahead<I> {
         }
     }
 }
+
+/// Pairs of numbers below `count`, those of the smallest sum first, and of these the most alike.
+fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..2 * count).flat_map(|sum| {
+        let half = sum / 2;
+        (0..=half).flat_map(move |k| {
+            let (less, more) = (half - k, sum - half + k);
+            std::iter::once((less, more)).chain((less != more).then_some((more, less)))
+        })
+    })
+}
+
+/// Where inside piece `b` of the one path piece `a` of the other ends, where its next joint stands on that piece or one of
+/// those behind it too.
+fn meets(p: &Held, a: usize, c: &Held, b: usize, rule: &Rule) -> Option<f64> {
+    let tolerance = rule.tolerance;
+    let on = |q: &Position, piece: &Bezier, low: f64| {
+        // Most pieces are far away, which their control points show.
+        let points = piece.control_points();
+        let far = (0..q.len()).any(|i| {
+            points.iter().all(|p| p[i] + tolerance < q[i]) || points.iter().all(|p| q[i] < p[i] - tolerance)
+        });
+        if far {
+            return None;
+        }
+        let u = foot(piece, q, low.max(0.5), low, 1.0);
+        (distance(&piece.eval(u), q) <= tolerance).then_some(u)
+    };
+    let ((_, own, _), (_, other, _)) = (p.get(a)?, c.get(b)?);
+    let u = on(&own.end(), other, 0.0).filter(|u| 0.0 < *u && *u < 1.0)?;
+    let (_, next, _) = p.get(a + 1)?;
+    let follows = on(&next.end(), other, u).is_some()
+        || c.iter().skip(b + 1).take(BEHIND).any(|(_, piece, _)| on(&next.end(), piece, 0.0).is_some());
+    follows.then_some(u)
+}
+
+/// Pieces that were looked at: which piece of the path each belongs to, and from where to where of it.
+type Held = VecDeque<(usize, Bezier, [f64; 2])>;
+
+/// How many pieces behind are looked at for the next joint.
+const BEHIND: usize = 8;
 
 /// The meetings of two paths, in order.
 pub struct Stream<P, C> {
@@ -182,28 +242,36 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
         !(meeting.distance <= self.rule.tolerance && meeting.turn <= self.rule.turn)
     }
 
-    /// How many pieces of each there are up to the next joint that both share, which another one follows.
+    /// How many pieces of each there are up to the next place where both are together again.
     fn joint(&mut self) -> Option<(usize, usize)> {
         if self.searches == 0 {
             return None;
         }
-        self.p.hold(LOOK);
-        self.c.hold(LOOK);
+        self.p.hold(LOOK + 1);
+        self.c.hold(LOOK + 1);
         let (p, c) = (&self.p.held, &self.c.held);
         let near = |a: usize, b: usize| match (p.get(a), c.get(b)) {
             (Some((_, p, _)), Some((_, c, _))) => distance(&p.end(), &c.end()) <= self.rule.tolerance,
             (None, None) => true,
             (Some(_), None) | (None, Some(_)) => false,
         };
-        // From the last place where both were together; the fewest pieces first, as many of each before others.
-        for sum in 0..2 * LOOK {
-            let half = sum / 2;
-            let pairs = (0..=half).flat_map(|k| [(half - k, sum - half + k), (sum - half + k, half - k)]);
-            for (a, b) in pairs {
-                if a < p.len() && b < c.len() && near(a, b) && near(a + 1, b + 1) {
-                    return Some((a + 1, b + 1));
-                }
+        let shared = |(a, b): &(usize, usize)| *a < p.len() && *b < c.len() && near(*a, *b) && near(a + 1, b + 1);
+        for (a, b) in pairs(NEAR) {
+            if shared(&(a, b)) {
+                return Some((a + 1, b + 1));
             }
+            // A joint of the one inside a piece of the other, and the next one too, or inside one of the pieces behind it.
+            if let Some(u) = meets(p, a, c, b, &self.rule) {
+                self.c.cut(b, u);
+                return Some((a + 1, b + 1));
+            }
+            if let Some(t) = meets(c, b, p, a, &self.rule) {
+                self.p.cut(a, t);
+                return Some((a + 1, b + 1));
+            }
+        }
+        if let Some((a, b)) = pairs(LOOK).find(shared) {
+            return Some((a + 1, b + 1));
         }
         self.searches -= 1;
         None
