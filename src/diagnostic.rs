@@ -244,7 +244,11 @@ impl Diagnostics {
                 end_column: end.map(|at| at.column),
                 label: place.map(|_| diagnostic.label.as_str()),
                 hints: &diagnostic.hints,
-                others: diagnostic.others.iter().filter_map(|(span, label)| json_place(*span, label, sources)).collect(),
+                others: diagnostic
+                    .others
+                    .iter()
+                    .filter_map(|(span, label)| json_place(*span, label, sources))
+                    .collect(),
             };
             text.push_str(&serde_json::to_string(&line).unwrap_or_default());
             text.push('\n');

@@ -68,8 +68,9 @@ impl Diff {
     /// machine that writes such programs.
     fn origin(&self, from: Option<&String>, sources: &mut Sources) -> Result<Origin, Diagnostics> {
         self.reading.tell(sources)?;
-        let looks_like_input =
-            sources.get(splinepost::source::SourceId::INPUT).is_some_and(|input| front::detect(input).is_ok());
+        let looks_like_input = sources
+            .get(splinepost::source::SourceId::INPUT)
+            .is_some_and(|input| front::detect(input).is_ok());
         let program = |sources: &Sources, origin: Origin| {
             let input = sources.get(splinepost::source::SourceId::INPUT);
             match input.filter(|input| input.encoding == Encoding::Windows1252) {

@@ -7,8 +7,8 @@
 //! F is compared where the paths meet, as a number, wherever both machines measure the path by the same length. Where one counts
 //! degrees and the other does not, or a line has its own time, the time of the whole path is compared.
 
-use super::Walk;
 use super::side::{Part, Shape, Side};
+use super::walk::{Farthest, Walk};
 use crate::diagnostic::Diagnostic;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric};
@@ -151,8 +151,7 @@ impl<'s, 'a> Run<'s, 'a> {
 /// Where two paths part: the first pieces, and the farthest.
 struct Parting {
     first: [usize; 2],
-    farthest: [usize; 2],
-    bound: Bound,
+    farthest: Farthest,
 }
 
 /// Where F differs, and how far.
@@ -177,6 +176,7 @@ impl<'a> Walk<'_, 'a> {
         };
         let timed = (a.measure() != b.measure() && (a.turns() || b.turns())) || a.is_timed() != b.is_timed();
         let mut uneven = false;
+        let mut farthest = Farthest::default();
         let mut parting: Option<Parting> = None;
         let mut slip: Option<Slip> = None;
         let same_turn = turn_of(self.a) == turn_of(self.b);
@@ -202,20 +202,18 @@ impl<'a> Walk<'_, 'a> {
                     if 4.0 * self.tolerance < begun.length && !begun.told {
                         begun.told = true;
                         let (at, feeds) = (begun.at, begun.feeds);
-                        self.feeds_differ([a.place(at[0]), b.place(at[1])], feeds);
+                        self.feeds_differ(|| [a.place(at[0]), b.place(at[1])], feeds);
                     }
                 } else if 0.0 < meeting.length {
                     slip = None;
                 }
             } else {
-                let known = parting.get_or_insert(Parting { first: [i, j], farthest: [i, j], bound: Bound::ZERO });
-                if known.bound.mm < bound.mm || known.bound.rad < bound.rad {
-                    known.farthest = [i, j];
-                }
-                known.bound = known.bound.max(bound);
+                let known = parting.get_or_insert(Parting { first: [i, j], farthest: Farthest::default() });
+                known.farthest.take(bound, [i, j]);
             }
-            self.found.take(bound, || [a.place(i), b.place(j)]);
+            farthest.take(bound, [i, j]);
         }
+        self.found.take(&farthest, || [a.place(farthest.at[0]), b.place(farthest.at[1])]);
         if let Some(parting) = parting {
             self.part(&a, &b, &parting);
         }
@@ -274,7 +272,7 @@ impl<'a> Walk<'_, 'a> {
     /// Tells where two paths part.
     fn part(&mut self, a: &Run, b: &Run, parting: &Parting) {
         let [i, j] = parting.first;
-        let Bound { mm, rad } = parting.bound;
+        let Bound { mm, rad } = parting.farthest.bound;
         let (tolerance, turn) = (self.tolerance, self.turn * DEGREES);
         let message = if tolerance < mm || self.a.axes.direction().is_none() {
             format!("the paths are up to {mm:.3e} mm apart, more than the tolerance of {tolerance} mm")
@@ -282,35 +280,38 @@ impl<'a> Walk<'_, 'a> {
             let angle = rad * DEGREES;
             format!("the tool's directions are up to {angle:.4} degrees apart, more than {turn}")
         };
-        let there = |piece: usize, farthest: usize| if piece == farthest { "" } else { "they part here" };
-        let mut diagnostic = Diagnostic::refusal("path-differs", message)
-            .at(a.place(i), there(i, parting.farthest[0]))
-            .and_at(b.place(j), "");
-        let [far_i, far_j] = parting.farthest;
-        if (far_i, far_j) != (i, j) {
-            if a.place(far_i) != a.place(i) {
-                diagnostic = diagnostic.and_at(a.place(far_i), "farthest apart here");
+        let [far_i, far_j] = parting.farthest.at;
+        self.found.differs(|| {
+            let (place_a, place_b) = (a.place(i), b.place(j));
+            let (far_a, far_b) = (a.place(far_i), b.place(far_j));
+            let here = if (far_a, far_b) == (place_a, place_b) { "" } else { "they part here" };
+            let mut diagnostic =
+                Diagnostic::refusal("path-differs", message).at(place_a, here).and_at(place_b, "");
+            for (near, far) in [(place_a, far_a), (place_b, far_b)] {
+                if near != far {
+                    diagnostic = diagnostic.and_at(far, "farthest apart here");
+                }
             }
-            if b.place(far_j) != b.place(j) {
-                diagnostic = diagnostic.and_at(b.place(far_j), "farthest apart here");
-            }
-        }
-        self.found.differs(diagnostic);
+            diagnostic
+        });
     }
 
-    pub(super) fn feeds_differ(&mut self, places: [Span; 2], feeds: [Option<f64>; 2]) {
+    pub(super) fn feeds_differ(&mut self, places: impl FnOnce() -> [Span; 2], feeds: [Option<f64>; 2]) {
         let spelled = |feed: Option<f64>| feed.map_or("no feed".to_owned(), |feed| format!("F {feed}"));
-        let [own, other] = feeds.map(spelled);
-        let message = format!("the feeds differ: {own} in the first program, {other} in the second");
-        let [a, b] = places;
-        self.found.differs(Diagnostic::refusal("feed-differs", message).at(a, own).and_at(b, other));
+        self.found.differs(|| {
+            let [own, other] = feeds.map(spelled);
+            let message = format!("the feeds differ: {own} in the first program, {other} in the second");
+            let [a, b] = places();
+            Diagnostic::refusal("feed-differs", message).at(a, own).and_at(b, other)
+        });
     }
 
     /// Compares how long two paths take.
     fn times(&mut self, a: &Run, b: &Run) {
         self.found.timed += 1;
         let (own, other) = (a.minutes(self.radius), b.minutes(self.radius));
-        let spelled = |time: Option<f64>| time.map_or("an unknown time".to_owned(), |t| format!("{t:.4} min"));
+        let spelled =
+            |time: Option<f64>| time.map_or("an unknown time".to_owned(), |t| format!("{t:.4} min"));
         let same = match (own, other) {
             (Some(own), Some(other)) => (own - other).abs() <= TIME * own.max(other),
             (None, None) => true,
@@ -318,9 +319,10 @@ impl<'a> Walk<'_, 'a> {
         };
         if !same {
             let (own, other) = (spelled(own), spelled(other));
-            let message = format!("the paths take {own} in the first program and {other} in the second");
-            let diagnostic = Diagnostic::refusal("time-differs", message).at(a.place(0), own).and_at(b.place(0), other);
-            self.found.differs(diagnostic);
+            self.found.differs(|| {
+                let message = format!("the paths take {own} in the first program and {other} in the second");
+                Diagnostic::refusal("time-differs", message).at(a.place(0), own).and_at(b.place(0), other)
+            });
         }
     }
 }

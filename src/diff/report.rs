@@ -1,6 +1,7 @@
 //! What a comparison tells beside the differences.
 
-use super::{Found, Origin, counted};
+use super::Origin;
+use super::walk::{Found, counted};
 use crate::source::{LineColumn, Sources, Span};
 use crate::units::DEGREES;
 use serde::Serialize;

@@ -123,7 +123,9 @@ impl Part<'_> {
                 [line.start, end]
             }
             Shape::Pieces(pieces, _) => {
-                let end = |piece: Option<&Bezier>, place: fn(&Bezier) -> Position| piece.map(place).unwrap_or_default();
+                let end = |piece: Option<&Bezier>, place: fn(&Bezier) -> Position| {
+                    piece.map(place).unwrap_or_default()
+                };
                 [end(pieces.first(), Bezier::start), end(pieces.last(), Bezier::end)]
             }
         };
@@ -317,14 +319,16 @@ impl<'a> Side<'a> {
                 Step::Coolant => "the coolant".to_owned(),
                 Step::Home(axis) => format!("{} to its home", name(*axis)),
                 Step::Shift(shifts) => {
-                    let names: Vec<String> = shifts.iter().map(|s| format!("{} {}", name(s.axis), s.to)).collect();
+                    let names: Vec<String> =
+                        shifts.iter().map(|s| format!("{} {}", name(s.axis), s.to)).collect();
                     format!("a work offset of {} that is a parameter", names.join(" "))
                 }
                 Step::Auxiliary(auxiliary) => spelled_auxiliary(auxiliary),
                 Step::Comment(_) | Step::Rapid(_) | Step::Cut(_) => "a step".to_owned(),
             },
             Item::Rapid(to, _) => {
-                let known = to.iter().enumerate().filter_map(|(axis, to)| Some(format!("{} {}", name(axis), (*to)?)));
+                let known =
+                    to.iter().enumerate().filter_map(|(axis, to)| Some(format!("{} {}", name(axis), (*to)?)));
                 format!("a rapid to {}", known.collect::<Vec<_>>().join(" "))
             }
             Item::Path(_) => "a path at feed".to_owned(),
@@ -364,10 +368,13 @@ impl<'a> Side<'a> {
 
     /// The same with the axes in the order of the other, which has the same.
     pub(super) fn ordered(mut self, axes: &Axes) -> Side<'a> {
-        let order: Vec<usize> = axes.as_slice().iter().filter_map(|(axis, _)| self.axes.index_of(*axis)).collect();
+        let order: Vec<usize> =
+            axes.as_slice().iter().filter_map(|(axis, _)| self.axes.index_of(*axis)).collect();
         for item in &mut self.items {
             match item {
-                Item::Switch(Step::Home(axis), _) => *axis = axes.index_of(self.axes.name(*axis)).unwrap_or(*axis),
+                Item::Switch(Step::Home(axis), _) => {
+                    *axis = axes.index_of(self.axes.name(*axis)).unwrap_or(*axis)
+                }
                 Item::Switch(Step::Shift(shifts), _) => shifts
                     .iter_mut()
                     .for_each(|s| s.axis = axes.index_of(self.axes.name(s.axis)).unwrap_or(s.axis)),
@@ -469,8 +476,7 @@ fn items<'a, N: Copy + 'a, C: 'a>(
             }
             Step::Cut(Cut { feed, curve, .. }) => {
                 let feed = feed.map(&number);
-                let part =
-                    |shape, slack| Part { shape, span, feed, slack, order: order.to_vec() };
+                let part = |shape, slack| Part { shape, span, feed, slack, order: order.to_vec() };
                 let (kind, part) = match shape(curve, span)? {
                     Shaped::Path(shape, slack) => (None, part(shape, slack)),
                     Shaped::Points(kind, shape) => (Some(kind), part(shape, 0.0)),

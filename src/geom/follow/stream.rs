@@ -63,12 +63,7 @@ struct Ahead<I> {
 
 impl<I: Iterator<Item = Bezier>> Ahead<I> {
     fn new(pieces: I) -> Ahead<I> {
-        Ahead {
-            rest: pieces.enumerate(),
-            held: VecDeque::new(),
-            stand: None,
-            last: (0, [0.0; MAX_AXES]),
-        }
+        Ahead { rest: pieces.enumerate(), held: VecDeque::new(), stand: None, last: (0, [0.0; MAX_AXES]) }
     }
 
     /// Holds at least `count` pieces, where there are as many.
@@ -255,7 +250,8 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
             (None, None) => true,
             (Some(_), None) | (None, Some(_)) => false,
         };
-        let shared = |(a, b): &(usize, usize)| *a < p.len() && *b < c.len() && near(*a, *b) && near(a + 1, b + 1);
+        let shared =
+            |(a, b): &(usize, usize)| *a < p.len() && *b < c.len() && near(*a, *b) && near(a + 1, b + 1);
         for (a, b) in pairs(NEAR) {
             if shared(&(a, b)) {
                 return Some((a + 1, b + 1));
