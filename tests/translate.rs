@@ -78,17 +78,13 @@ fn a_cubic_goes_round_all_dialects() {
 #[test]
 fn every_golden_program_of_cl_data_can_be_asked_of_every_machine() {
     let [sinumerik, heidenhain, mazak] = ["sinumerik", "heidenhain", "mazak"].map(built_in);
-    let mut count = 0;
+    let (mut count, mut five) = (0, 0);
     for (name, text) in crate::apt::inputs() {
         let language = front::find("apt").expect("CL data");
         let sources = Sources::new(Source::new("input.cl", text.as_str()));
         for from in [&sinumerik, &heidenhain, &mazak] {
             let Ok(asked) = compile(&sources, language, from, &Options::default()) else { continue };
-            // Without its input nobody knows that a program leads the tip: its directions are words of nothing.
-            if asked.intent.program.axes.direction().is_some() {
-                assert!(program(&asked.text, from, &sinumerik, None).is_err(), "{name}: {}", from.name);
-                continue;
-            }
+            five += usize::from(asked.intent.program.axes.direction().is_some());
             for to in [&sinumerik, &heidenhain, &mazak] {
                 let output = match program(&asked.text, from, to, None) {
                     Ok(output) => output,
@@ -104,7 +100,7 @@ fn every_golden_program_of_cl_data_can_be_asked_of_every_machine() {
             }
         }
     }
-    assert!(9 < count, "{count}");
+    assert!(9 < count && 5 < five, "{count} {five}");
 }
 
 #[test]
