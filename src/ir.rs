@@ -37,6 +37,13 @@ pub struct Program<N, C> {
     pub steps: Vec<Located<N, C>>,
 }
 
+impl<N, C> Program<N, C> {
+    /// Whether positions count in tilted planes somewhere.
+    pub fn has_planes(&self) -> bool {
+        self.steps.iter().any(|located| matches!(located.step, Step::Auxiliary(Auxiliary::Plane(_))))
+    }
+}
+
 /// A step and the text that it came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Located<N, C> {
@@ -105,6 +112,11 @@ pub enum Auxiliary<N> {
     TipControl,
     /// That ends.
     TipControlEnd,
+    /// From here on positions count in a plane that is tilted by three angles, degrees, in the order of the machine file,
+    /// and the tool stands square to it. Where the axes are in it nobody knows.
+    Plane([N; 3]),
+    /// That ends.
+    PlaneEnd,
 }
 
 impl<N> Auxiliary<N> {
@@ -118,19 +130,29 @@ impl<N> Auxiliary<N> {
             Auxiliary::Dwell(_) => "dwell",
             Auxiliary::TipControl => "tip_control",
             Auxiliary::TipControlEnd => "tip_control_end",
+            Auxiliary::Plane(_) => "plane",
+            Auxiliary::PlaneEnd => "plane_end",
         }
     }
 
-    /// The same with another kind of number; none where `f` has none.
-    pub fn try_map<M>(self, f: impl Fn(N) -> Option<M>) -> Option<Auxiliary<M>> {
+    /// The same with another kind of number for seconds and for angles; none where these have none.
+    pub fn try_map<M>(
+        self,
+        seconds: impl Fn(N) -> Option<M>,
+        angle: impl Fn(N) -> Option<M>,
+    ) -> Option<Auxiliary<M>> {
         Some(match self {
             Auxiliary::CoolantStop => Auxiliary::CoolantStop,
             Auxiliary::SpindleStop => Auxiliary::SpindleStop,
             Auxiliary::Stop => Auxiliary::Stop,
             Auxiliary::OptionalStop => Auxiliary::OptionalStop,
-            Auxiliary::Dwell(seconds) => Auxiliary::Dwell(f(seconds)?),
+            Auxiliary::Dwell(time) => Auxiliary::Dwell(seconds(time)?),
             Auxiliary::TipControl => Auxiliary::TipControl,
             Auxiliary::TipControlEnd => Auxiliary::TipControlEnd,
+            Auxiliary::Plane([first, second, third]) => {
+                Auxiliary::Plane([angle(first)?, angle(second)?, angle(third)?])
+            }
+            Auxiliary::PlaneEnd => Auxiliary::PlaneEnd,
         })
     }
 }
@@ -198,6 +220,8 @@ pub struct Intent {
     pub name_span: Option<Span>,
     /// The radius at which rotary axes count, mm, where the input states one.
     pub radius: Option<f64>,
+    /// How far the tool's direction in tilted planes is from the one asked for, radians: what rounding their angles cost.
+    pub tilt_error: f64,
     /// What to know about it.
     pub warnings: Diagnostics,
 }

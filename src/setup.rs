@@ -5,7 +5,8 @@ use crate::decimal::Decimal;
 use crate::dialect::Form;
 use crate::dialect::parts::Assigned;
 use crate::geom::direction;
-use crate::ir::{Curve, Decimals, Intent, Role, Step, Units, Written};
+use crate::geom::rotation::Rotation;
+use crate::ir::{Auxiliary, Curve, Decimals, Intent, Role, Step, Units, Written};
 use crate::machine::{Machine, Moves, Turn};
 use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
@@ -19,8 +20,10 @@ pub struct Setup {
     pub zero: Option<String>,
     /// How far and how fast each axis goes.
     pub axes: Vec<AxisFigures>,
-    /// The least and the greatest angle of the tool to Z, degrees, in five axes.
+    /// The least and the greatest angle of the tool to Z, degrees, in five axes and in tilted planes.
     pub tilt: Option<[f64; 2]>,
+    /// Whether ranges are counted in tilted planes, each in its own.
+    pub planes: bool,
     /// Where rotary axes go evenly between two directions: how far that leaves the great circle at most, degrees.
     pub turn: Option<f64>,
     /// Where rapids are clear: an axis and its place.
@@ -96,7 +99,8 @@ impl Setup {
         Setup {
             zero: zero(intent),
             axes: figures.collect(),
-            tilt: tilt(decimals),
+            tilt: tilt(decimals, machine),
+            planes: decimals.program.has_planes(),
             turn: (machine.orientation.turn == Turn::Tilt).then(|| departure(decimals)).flatten(),
             clear: clear(intent),
             home,
@@ -130,7 +134,8 @@ impl Setup {
                 Some(format!("{} {} TO {}", figures.axis, short(low, 3), short(high, 3)))
             })
             .collect();
-        lines.push(format!("RANGE: {}", ranges.join(", ")));
+        let counted = if self.planes { "RANGE, COUNTED IN EACH PLANE" } else { "RANGE" };
+        lines.push(format!("{counted}: {}", ranges.join(", ")));
         if let Some([least, most]) = self.tilt {
             lines.push(format!("TOOL AXIS: {} TO {} DEGREES FROM Z", short(least, 3), short(most, 3)));
         }
@@ -236,6 +241,10 @@ fn not_covered(intent: &Intent) -> Vec<String> {
         all.push("where the rotary axes go and what they meet there".to_owned());
         all.push("that the tool turns between blocks as the machine file says".to_owned());
     }
+    if intent.program.has_planes() {
+        all.push("where the rotary axes go and what they meet there".to_owned());
+        all.push("how far the machine's own axes go in tilted planes".to_owned());
+    }
     all
 }
 
@@ -318,14 +327,22 @@ fn directions(decimals: &Decimals, first: usize, mut take: impl FnMut([f64; 3], 
 }
 
 /// How far the tool is tilted, degrees.
-fn tilt(decimals: &Decimals) -> Option<[f64; 2]> {
-    let first = decimals.program.axes.direction()?;
+fn tilt(decimals: &Decimals, machine: &Machine) -> Option<[f64; 2]> {
     let mut range: Option<[f64; 2]> = None;
-    directions(decimals, first, |d, _| {
+    let mut take = |d: [f64; 3]| {
         let tilt = direction::tilt(&d);
         let [least, most] = range.unwrap_or([tilt, tilt]);
         range = Some([least.min(tilt), most.max(tilt)]);
-    });
+    };
+    if let Some(first) = decimals.program.axes.direction() {
+        directions(decimals, first, |d, _| take(d));
+    }
+    for located in &decimals.program.steps {
+        if let Step::Auxiliary(Auxiliary::Plane(angles)) = located.step {
+            let angles = angles.map(Decimal::to_f64);
+            take(Rotation::of(machine.orientation.plane_order, angles).axis());
+        }
+    }
     range
 }
 
@@ -346,6 +363,9 @@ fn needs(decimals: &Decimals, machine: &Machine) -> Vec<String> {
     let mut needs: Vec<String> = Vec::new();
     if decimals.program.axes.direction().is_some() {
         needs.push("five-axis transformation".to_owned());
+    }
+    if decimals.program.has_planes() {
+        needs.push("tilted planes".to_owned());
     }
     for cut in decimals.program.steps.iter().filter_map(|located| located.step.cut()) {
         let form = match &cut.curve {

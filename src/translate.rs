@@ -98,7 +98,7 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
     }
     let Program { name, number, .. } = &decimals.program;
     let program = Program { name: name.clone(), number: *number, axes, steps: asked };
-    Ok(Intent { program, tolerance: None, name_span: None, radius: None, warnings })
+    Ok(Intent { program, tolerance: None, name_span: None, radius: None, tilt_error: 0.0, warnings })
 }
 
 /// The remarks before the first step that are not about setting up: those behind the last of these.
@@ -198,8 +198,12 @@ impl Translation<'_> {
                 return Ok(None);
             }
             Step::Auxiliary(auxiliary) => {
-                let seconds: Option<Auxiliary<f64>> = auxiliary.try_map(|seconds| Some(seconds.to_f64()));
-                return Ok(seconds.map(Step::Auxiliary));
+                if let Auxiliary::Plane(_) | Auxiliary::PlaneEnd = auxiliary {
+                    let message = "programs with tilted planes are not translated";
+                    return Err(Diagnostic::error("plane-translated", message).at(located.span, "").into());
+                }
+                let number = |x: Decimal| Some(x.to_f64());
+                return Ok(auxiliary.try_map(number, number).map(Step::Auxiliary));
             }
             Step::Rapid(targets) => {
                 let targets = targets.iter().filter_map(|(axis, to)| Some((self.index(*axis)?, to.to_f64())));

@@ -65,7 +65,7 @@ pub fn verify(
 ) -> Result<Report, Diagnostics> {
     let decimals = &reading.decimals;
     let mut report = Report {
-        deviation: Bound::ZERO,
+        deviation: Bound { rad: intent.tilt_error, ..Bound::ZERO },
         status: Status::Proved,
         from_ideal: None,
         map: None,
@@ -149,7 +149,7 @@ pub fn verify(
                     |step| matches!(step, Step::Spindle(read) if Some(*read) == rounded),
                 )?;
             }
-            Step::Auxiliary(auxiliary) => cursor.auxiliary(auxiliary, machine.digits.feed)?,
+            Step::Auxiliary(auxiliary) => cursor.auxiliary(auxiliary, machine.digits)?,
             Step::Rapid(targets) => {
                 let origin = cursor.origin;
                 let names: Vec<String> = targets

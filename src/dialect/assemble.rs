@@ -293,6 +293,7 @@ impl<'m> Assembler<'m> {
         match &step {
             Step::Auxiliary(Auxiliary::TipControl) => self.led = true,
             Step::Auxiliary(Auxiliary::TipControlEnd) => self.led = false,
+            Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => self.position = [None; MAX_AXES],
             Step::Auxiliary(_)
             | Step::Comment(_)
             | Step::Tool(_)

@@ -72,7 +72,7 @@ impl<'m> Frame<'m> {
     }
 
     /// The lists of lines that may stand anywhere behind the header.
-    fn lists(&self) -> [&'m [Template]; 13] {
+    fn lists(&self) -> [&'m [Template]; 15] {
         let frame = &self.machine.frame;
         [
             &frame.tool_spindle,
@@ -87,6 +87,8 @@ impl<'m> Frame<'m> {
             &frame.dwell,
             &frame.tip_control,
             &frame.tip_control_end,
+            &frame.plane,
+            &frame.plane_end,
             &frame.shift,
         ]
     }
@@ -168,7 +170,7 @@ impl<'m> Frame<'m> {
             return Met::Fixed;
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins like one; a byte decides.
-        for lines in &self.lists()[..12] {
+        for lines in &self.lists()[..14] {
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
                 && self.take(template, text, span, true, assembler)
@@ -223,6 +225,7 @@ impl<'m> Frame<'m> {
             Auxiliary::OptionalStop,
             Auxiliary::TipControl,
             Auxiliary::TipControlEnd,
+            Auxiliary::PlaneEnd,
         ];
         all.into_iter().find(|switch| {
             let first = self.machine.frame.auxiliary(switch).first();
@@ -262,8 +265,18 @@ impl<'m> Frame<'m> {
         assembler: &mut Assembler<'m>,
     ) -> bool {
         let Some(values) = template.matched(text) else { return false };
+        let mut angles = [None; 3];
         for (variable, value) in values {
             match variable.as_str() {
+                "first" | "second" | "third" => {
+                    let Some(angle) = whole_decimal(value) else { return false };
+                    // A number that no writer makes would be another plane than the one that is compared.
+                    if angle.units(self.machine.digits.rotary).is_none() {
+                        return false;
+                    }
+                    angles[["first", "second", "third"].iter().position(|n| *n == variable).unwrap_or(0)] =
+                        Some(angle);
+                }
                 "name" => {
                     if self.name.as_deref().is_some_and(|known| known != value) {
                         return false;
@@ -282,10 +295,12 @@ impl<'m> Frame<'m> {
                 }
                 "tool" => {
                     let Ok(number) = value.parse::<u32>() else { return false };
-                    if self.machine.frame.tip_control.first() == Some(template) {
-                        // The length of the tool that leads its tip.
+                    let frame = &self.machine.frame;
+                    if [&frame.tip_control, &frame.plane].iter().any(|lines| lines.first() == Some(template))
+                    {
+                        // The length of the tool that leads its tip, or stands square to a plane.
                         if assembler.tool() != Some(number) {
-                            let message = format!("tool {number} was not called before its tip is led");
+                            let message = format!("tool {number} was not called before it is tilted");
                             assembler.error("tool-offset", message, span.start as usize..span.end as usize);
                         }
                     } else if first {
@@ -312,6 +327,9 @@ impl<'m> Frame<'m> {
                     _ => return false,
                 },
             }
+        }
+        if let [Some(first), Some(second), Some(third)] = angles {
+            assembler.step(Step::Auxiliary(Auxiliary::Plane([first, second, third])), span);
         }
         if !self.machine.frame.coolant.is_empty() && self.machine.frame.coolant.first() == Some(template) {
             assembler.step(Step::Coolant, span);

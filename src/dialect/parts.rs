@@ -22,6 +22,8 @@ pub enum Part<'p> {
     Home(usize),
     /// The lines that lead the tip of the tool, or end that, are written.
     TipControl(bool),
+    /// The lines of a tilted plane, or of its end, are written: nothing is in force.
+    Plane,
     /// The lines of a work offset are written.
     Shift(&'p [Shift<Decimal>]),
     /// A remark that is no section: what to set up.
@@ -165,20 +167,31 @@ impl<'p> Walk<'p, '_> {
                 }
                 Step::Coolant => self.fill(&frame.coolant, &[]),
                 Step::Auxiliary(auxiliary) => {
-                    let seconds = match auxiliary {
-                        Auxiliary::Dwell(seconds) => unsigned(*seconds, self.machine),
+                    let tool = self.tool.to_string();
+                    let mut values = vec![("tool", tool)];
+                    match auxiliary {
+                        Auxiliary::Dwell(seconds) => {
+                            values.push(("seconds", unsigned(*seconds, self.machine)));
+                        }
+                        Auxiliary::Plane(angles) => {
+                            let spelled = angles.map(|angle| spelled(angle, self.machine));
+                            values.extend(["first", "second", "third"].into_iter().zip(spelled));
+                        }
                         Auxiliary::CoolantStop
                         | Auxiliary::SpindleStop
                         | Auxiliary::Stop
                         | Auxiliary::OptionalStop
                         | Auxiliary::TipControl
-                        | Auxiliary::TipControlEnd => String::new(),
-                    };
-                    let tool = self.tool.to_string();
-                    self.fill(frame.auxiliary(auxiliary), &[("seconds", &seconds), ("tool", &tool)]);
+                        | Auxiliary::TipControlEnd
+                        | Auxiliary::PlaneEnd => {}
+                    }
+                    let values: Vec<(&str, &str)> =
+                        values.iter().map(|(name, value)| (*name, value.as_str())).collect();
+                    self.fill(frame.auxiliary(auxiliary), &values);
                     match auxiliary {
                         Auxiliary::TipControl => self.parts.push(Part::TipControl(true)),
                         Auxiliary::TipControlEnd => self.parts.push(Part::TipControl(false)),
+                        Auxiliary::Plane(_) | Auxiliary::PlaneEnd => self.parts.push(Part::Plane),
                         Auxiliary::CoolantStop
                         | Auxiliary::SpindleStop
                         | Auxiliary::Stop

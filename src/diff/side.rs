@@ -9,8 +9,8 @@ use crate::geom::arc::{Arc, turned};
 use crate::geom::bezier::Bezier;
 use crate::geom::round;
 use crate::ir::{
-    ArcBy, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Shift, Step, ThroughKind, Written,
-    WrittenNurbs, WrittenPoints, sweep,
+    ArcBy, Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Shift, Step, ThroughKind,
+    Written, WrittenNurbs, WrittenPoints, sweep,
 };
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -443,8 +443,12 @@ fn items<'a, N: Copy + 'a, C: 'a>(
             Step::Spindle(rpm) => switch(Step::Spindle(number(*rpm))),
             Step::Coolant => switch(Step::Coolant),
             Step::Auxiliary(auxiliary) => {
-                if let Some(auxiliary) = auxiliary.try_map(|seconds| Some(number(seconds))) {
+                let plain = |x| Some(number(x));
+                if let Some(auxiliary) = auxiliary.try_map(plain, plain) {
                     switch(Step::Auxiliary(auxiliary));
+                }
+                if let Auxiliary::Plane(_) | Auxiliary::PlaneEnd = auxiliary {
+                    at = [None; MAX_AXES];
                 }
             }
             Step::Home(axis) => {

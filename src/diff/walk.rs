@@ -7,10 +7,14 @@ use super::side::{Item, Part, Side};
 use crate::decimal::power_of_ten;
 use crate::diagnostic::Diagnostic;
 use crate::geom::deviation::{Bound, Metric};
+use crate::geom::rotation::Rotation;
 use crate::ir::{Auxiliary, Step};
 use crate::source::Span;
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 use crate::verify::Status;
+
+/// Two planes are one where no component of their axes differs by more: rounding, and far less than any decimal of an angle.
+const SAME_PLANE: f64 = 1.0e-12;
 
 /// So many differences are told.
 const MOST_TOLD: usize = 5;
@@ -215,6 +219,15 @@ impl<'s, 'a> Walk<'s, 'a> {
             (Step::Spindle(own), Step::Spindle(other))
             | (Step::Auxiliary(Auxiliary::Dwell(own)), Step::Auxiliary(Auxiliary::Dwell(other))) => {
                 self.same_number(*own, *other, digits)
+            }
+            (Step::Auxiliary(Auxiliary::Plane(own)), Step::Auxiliary(Auxiliary::Plane(other))) => {
+                let plane = |side: &Side<'a>, angles: [f64; 3]| {
+                    Some(Rotation::of(side.machine?.orientation.plane_order, angles).0)
+                };
+                let (own, other) = (plane(self.a, *own), plane(self.b, *other));
+                own.zip(other).is_some_and(|(own, other)| {
+                    own.iter().flatten().zip(other.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME_PLANE)
+                })
             }
             (own, other) => own == other,
         }

@@ -9,6 +9,7 @@
 //! | [`logcurve`] | the path of a conical cutter, A = a ln(1 + bX) |
 //! | [`oddeven`] | its points by the odd-even third-order steps |
 //! | [`arc`] | arcs and helices, and how far a control may be from one |
+//! | [`rotation`] | frames that are turned, and the three angles that state them |
 //! | [`bernstein`] | polynomials whose coefficients bound them |
 //! | [`bezier`] | one piece of a curve, rational where it must be |
 //! | [`expr`] | expressions in one parameter, their derivatives and bounds |
@@ -40,6 +41,7 @@ pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;
 mod relax;
+pub mod rotation;
 pub mod round;
 pub mod runs;
 pub mod smooth;

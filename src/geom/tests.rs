@@ -196,7 +196,8 @@ proptest! {
 
     #[test]
     fn values_are_those_of_the_basis_functions(spline in clamped(MAX_PIECE_DEGREE, FAR)) {
-        same(&spline.nurbs(), &spline, MIXED)?;
+        // A share and 1 − share round apart, as if the parameter did; weights make the curve fast there.
+        same(&spline.nurbs(), &spline, MIXED + spline.drift())?;
     }
 
     #[test]
@@ -212,9 +213,10 @@ proptest! {
             finer = finer.with_knot(t);
         }
         prop_assert_eq!(finer.points().len(), spline.points.len() + spline.degree);
-        same(&finer, &spline, 2.0 * MIXED)?;
+        let allowed = 2.0 * MIXED + spline.drift();
+        same(&finer, &spline, allowed)?;
         let at = finer.knots().partition_point(|k| *k < t);
-        near(&finer.points()[at - 1], &spline.eval(t), 2.0 * MIXED)?;
+        near(&finer.points()[at - 1], &spline.eval(t), allowed)?;
     }
 
     #[test]

@@ -157,6 +157,7 @@ impl Reader {
         let orientation = self.orientation(&own, dialect, base.map(|b| b.orientation))?;
         let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
         self.turns_as_stated(&frame, orientation, dialect);
+        self.tilts(&frame);
         let cutter_axes = self.cutter_axes(axes_file.cutter.as_ref(), base)?;
         Some(Machine {
             name: self.or(file.name, base.map(|b| b.name.clone()), "name")?,

@@ -81,6 +81,7 @@ pub const KEYS: &[Key] = &[
             Key::value("second_curve"),
             Key::value("length"),
             Key::value("safe_height"),
+            Key::value("plane_order"),
         ],
     ),
     Key::table(
@@ -100,6 +101,8 @@ pub const KEYS: &[Key] = &[
             Key::value("dwell"),
             Key::value("tip_control"),
             Key::value("tip_control_end"),
+            Key::value("plane"),
+            Key::value("plane_end"),
             Key::value("shift"),
             Key::value("footer"),
             Key::value("subprograms"),
@@ -332,6 +335,9 @@ pub(super) struct OrientationFile {
     /// The height of the tip at which the tool may turn before it goes to the work, mm. Without it the greatest Z of the program.
     #[schemars(with = "Option<f64>")]
     pub(super) safe_height: Option<Spanned<f64>>,
+    /// About which axes the angles of a tilted plane turn, each about the axes as turned so far: xyz, zyx, zxz and so on.
+    #[schemars(with = "Option<String>", regex(pattern = "^[xyz]{3}$"))]
+    pub(super) plane_order: Option<Spanned<String>>,
 }
 
 /// The lines round a program. {name}, {tool} and {rpm} are filled in.
@@ -379,6 +385,12 @@ pub(super) struct ProgramFile {
     /// What ends that.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tip_control_end: Option<Vec<Spanned<String>>>,
+    /// What tilts the plane in which positions count and turns the tool square to it; {first}, {second}, {third}: the angles in the order of plane_order, in one line; {tool}. Without it the tip of a tilted tool is led.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) plane: Option<Vec<Spanned<String>>>,
+    /// What ends that.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) plane_end: Option<Vec<Spanned<String>>>,
     /// A work offset; {words}: the axis words. A line with {i} stands once for each axis, {i} counting from 1.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) shift: Option<Vec<Spanned<String>>>,

@@ -3,6 +3,7 @@
 use super::template::Template;
 use crate::decimal::Spelling;
 use crate::dialect::{Dialect, Motion};
+use crate::geom::rotation::Order;
 use crate::ir::Auxiliary;
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
@@ -64,6 +65,8 @@ pub struct Orientation {
     /// The height of the tip, mm, at which the tool may turn before it goes to the work; none: the greatest Z of the
     /// program.
     pub safe_height: Option<f64>,
+    /// About which axes the angles of a tilted plane turn.
+    pub plane_order: Order,
 }
 
 /// How a control turns the tool from one direction to another.
@@ -262,6 +265,10 @@ pub struct Frame {
     pub tip_control: Vec<Template>,
     /// What ends that.
     pub tip_control_end: Vec<Template>,
+    /// What tilts the plane in which positions count, and turns the tool square to it.
+    pub plane: Vec<Template>,
+    /// What ends that.
+    pub plane_end: Vec<Template>,
     /// A work offset.
     pub shift: Vec<Template>,
     /// After the last step.
@@ -289,6 +296,8 @@ impl Frame {
             Auxiliary::Dwell(_) => &self.dwell,
             Auxiliary::TipControl => &self.tip_control,
             Auxiliary::TipControlEnd => &self.tip_control_end,
+            Auxiliary::Plane(_) => &self.plane,
+            Auxiliary::PlaneEnd => &self.plane_end,
         }
     }
 }

@@ -5,12 +5,16 @@
 //! runs from 0 to 159, and so does every other. Where the cutter turns by more than a whole turn, no offset helps: the
 //! flute is counted from where it starts, and lines go round in steps.
 
+mod plane;
 mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Shift, Step};
+use crate::geom::bezier::Bezier;
+use crate::ir::{
+    Auxiliary, Curve, Cut, Described, Intent, Located, Logarithmic, Polyline, Role, Shift, Step,
+};
 use crate::machine::Machine;
-use crate::units::{Axes, Axis, DEGREES, Kind};
+use crate::units::{Axes, Axis, DEGREES, Kind, Position};
 
 /// The intent as this machine counts it: its axes' names, its homes, its work offsets.
 ///
@@ -30,6 +34,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
             }
         }
     }
+    plane::tilt(&mut intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
     // A program that was written before leads it already.
     let led = |located: &Located<f64, Curve>| located.step == Step::Auxiliary(Auxiliary::TipControl);
@@ -37,6 +42,9 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
         tip::lead(&mut intent, &machine)?;
     }
     homes(&mut intent, &machine);
+    if intent.program.axes.direction().is_none() {
+        over_the_work(&mut intent);
+    }
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
     Ok(intent)
@@ -57,12 +65,87 @@ fn homes(intent: &mut Intent, machine: &Machine) {
     });
 }
 
+/// From its home the tool goes over the work before it goes down. A rapid that brings an axis from its home brings the others
+/// first. Where a cut comes instead, the others go to its end at rapid, or to its start where it is no line, and the axis
+/// comes down at the feed of the cut: it starts wherever home is.
+fn over_the_work(intent: &mut Intent) {
+    let (count, steps) = (intent.program.axes.count(), &mut intent.program.steps);
+    let mut home = None;
+    let mut all = Vec::with_capacity(steps.len());
+    for mut located in std::mem::take(steps) {
+        match &mut located.step {
+            Step::Home(axis) => home = Some(*axis),
+            Step::Rapid(targets) => {
+                if let Some(axis) = home.take_if(|home| targets.iter().any(|(axis, _)| axis == home)) {
+                    let (down, over): (Vec<_>, Vec<_>) =
+                        targets.iter().partition(|(named, _)| *named == axis);
+                    if !over.is_empty() {
+                        all.push(Located { step: Step::Rapid(over), span: located.span });
+                    }
+                    *targets = down;
+                }
+            }
+            Step::Cut(cut) => {
+                let span = located.span;
+                let mut over = |axis: usize, place: &Position| {
+                    let targets = (0..count).filter(|i| *i != axis).map(|i| (i, place[i])).collect();
+                    all.push(Located { step: Step::Rapid(targets), span });
+                };
+                match (home.take(), &mut cut.curve) {
+                    (None, _) => {}
+                    (Some(axis), Curve::Lines(line)) => {
+                        let first = line.points().next();
+                        if let Some(first) = first {
+                            over(axis, &first);
+                            line.start = first;
+                        }
+                    }
+                    (Some(axis), curve) => {
+                        if let Some(start) = start(curve) {
+                            over(axis, &start);
+                            let mut line = Polyline::new(start, count);
+                            line.push(&start);
+                            let curve = Curve::Lines(line);
+                            let down = Cut { feed: cut.feed, role: Role::Approach, curve };
+                            all.push(Located { step: Step::Cut(down), span });
+                        }
+                    }
+                }
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+        all.push(located);
+    }
+    *steps = all;
+}
+
+/// Where a curve starts; none of one that has no places of its own.
+fn start(curve: &Curve) -> Option<Position> {
+    match curve {
+        Curve::Lines(line) | Curve::Through(_, line) => Some(line.start),
+        Curve::Arc(arc) => Some(arc.start()),
+        Curve::Nurbs(nurbs) => nurbs.points().first().copied(),
+        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
+            pieces.first().map(Bezier::start)
+        }
+        Curve::Logarithmic(_) => None,
+    }
+}
+
 /// From its home the tool goes over the work before it goes down: the rapids of the linear axes that the first section
 /// makes in clear air are made once more before it.
 fn position_at_home(intent: &mut Intent) {
     let axes = intent.program.axes;
     let steps = &mut intent.program.steps;
-    let home = steps.iter().find_map(|located| match located.step {
+    let Some(first) = steps.iter().position(|located| matches!(located.step, Step::Comment(_))) else {
+        return;
+    };
+    let home = steps[..first].iter().find_map(|located| match located.step {
         Step::Home(axis) => Some(axis),
         Step::Comment(_)
         | Step::Tool(_)
@@ -74,9 +157,6 @@ fn position_at_home(intent: &mut Intent) {
         | Step::Cut(_) => None,
     });
     let Some(home) = home else { return };
-    let Some(first) = steps.iter().position(|located| matches!(located.step, Step::Comment(_))) else {
-        return;
-    };
     let moves = steps[first..].iter().take_while(|located| located.step.cut().is_none());
     let over: Vec<Located<f64, Curve>> = moves
         .filter(|located| match &located.step {

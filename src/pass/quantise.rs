@@ -28,8 +28,9 @@ use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    self, ArcBy, COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program, Role,
-    Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial, turned_end,
+    self, ArcBy, Auxiliary, COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program,
+    Role, Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    turned_end,
 };
 use crate::machine::Machine;
 use crate::setup::wrapped;
@@ -193,7 +194,12 @@ impl Quantiser<'_> {
             Step::Spindle(rpm) => Step::Spindle(rate(rpm)?),
             Step::Coolant => Step::Coolant,
             Step::Auxiliary(auxiliary) => {
-                Step::Auxiliary(auxiliary.try_map(|seconds| rate(seconds).ok()).ok_or(Unwritable)?)
+                if matches!(auxiliary, Auxiliary::Plane(_) | Auxiliary::PlaneEnd) {
+                    self.position = [None; MAX_AXES];
+                }
+                let angle = |x: f64| Decimal::round(x, self.machine.digits.rotary);
+                let auxiliary = auxiliary.try_map(|seconds| rate(seconds).ok(), angle);
+                Step::Auxiliary(auxiliary.ok_or(Unwritable)?)
             }
             Step::Home(axis) => {
                 self.position[axis] = None;

@@ -55,6 +55,8 @@ fn turned((low, high): (f64, f64), reversed: bool) -> (f64, f64) {
 pub(super) fn positions(decimals: &Decimals, machine: &Machine) -> Diagnostics {
     let mut found = Diagnostics::new();
     let extents = extents(decimals);
+    // What X is in a tilted plane says nothing of the machine's own X.
+    let tilted = decimals.program.has_planes();
     for (i, (axis, kind)) in decimals.program.axes.as_slice().iter().enumerate() {
         let (low, high) = extents[i];
         if low < -GREATEST || GREATEST < high {
@@ -68,6 +70,9 @@ pub(super) fn positions(decimals: &Decimals, machine: &Machine) -> Diagnostics {
             ));
         }
         let limits = machine.limits(*axis);
+        if tilted && *kind == Kind::Linear {
+            continue;
+        }
         if limits.modulo {
             found.extend(wraps(decimals, machine, i).map(Diagnostics::from).unwrap_or_default());
             continue;

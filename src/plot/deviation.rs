@@ -149,6 +149,7 @@ mod tests {
             pieces: points.windows(2).map(line).collect(),
             places: Vec::new(),
             through: false,
+            planes: false,
             radius_unknown: false,
             polygons: Vec::new(),
         }

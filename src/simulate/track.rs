@@ -77,6 +77,8 @@ pub struct Track {
     pub places: Vec<Place>,
     /// The points that the control leads a spline of its own through were joined by lines.
     pub through: bool,
+    /// Places are counted in tilted planes, each in its own.
+    pub planes: bool,
     /// F counts rotary axes at a radius that is not known; a degree counted as a millimetre.
     pub radius_unknown: bool,
     /// Control polygons, where they are asked for.
@@ -143,6 +145,7 @@ impl Track {
                 Step::Rapid(targets) => builder.rapid(targets.iter().map(|(axis, to)| (*axis, to.to_f64()))),
                 Step::Home(axis) => builder.home(*axis),
                 Step::Auxiliary(Auxiliary::Dwell(seconds)) => builder.dwell(seconds.to_f64()),
+                Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => builder.plane(),
                 Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Auxiliary(_) => builder.stand(),
                 Step::Comment(_) | Step::Shift(_) => {}
             }
@@ -189,6 +192,7 @@ impl<'m> Builder<'m> {
             pieces: Vec::new(),
             places: Vec::new(),
             through: false,
+            planes: false,
             radius_unknown: false,
             polygons: Vec::new(),
         };
@@ -242,6 +246,13 @@ impl<'m> Builder<'m> {
         self.stand();
         self.position[axis] = None;
         self.track.events.push(Event::Rapid(vec![(axis, None)]));
+    }
+
+    /// Places count in another plane: where the axes are in it nobody knows.
+    fn plane(&mut self) {
+        self.stand();
+        self.track.planes = true;
+        self.position = [None; MAX_AXES];
     }
 
     fn dwell(&mut self, seconds: f64) {

@@ -7,6 +7,7 @@ use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
 use crate::geom::direction;
 use crate::ir::{ArcBy, Auxiliary, Decimals, Step, Written, WrittenArc, WrittenPoints, sweep};
+use crate::machine::Digits;
 use crate::pass::arcs::sagitta;
 use crate::units::{MAX_AXES, Position};
 
@@ -120,9 +121,10 @@ impl Cursor<'_> {
     }
 
     /// Meets a switch, or a dwell in seconds.
-    pub(super) fn auxiliary(&mut self, asked: &Auxiliary<f64>, digits: u8) -> Result<(), Diagnostics> {
+    pub(super) fn auxiliary(&mut self, asked: &Auxiliary<f64>, digits: Digits) -> Result<(), Diagnostics> {
         let what = spelled_auxiliary(asked);
-        let rounded = asked.try_map(|seconds| Decimal::round(seconds, digits));
+        let rounded = asked
+            .try_map(|seconds| Decimal::round(seconds, digits.feed), |x| Decimal::round(x, digits.rotary));
         self.meet(&what, |step| matches!(step, Step::Auxiliary(read) if Some(*read) == rounded))
     }
 }
@@ -146,5 +148,9 @@ pub fn spelled_auxiliary(auxiliary: &Auxiliary<f64>) -> String {
         Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
         Auxiliary::TipControl => "that the tip is led".to_owned(),
         Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
+        Auxiliary::Plane([first, second, third]) => {
+            format!("a plane tilted by {first}, {second} and {third} degrees")
+        }
+        Auxiliary::PlaneEnd => "the end of the tilted plane".to_owned(),
     }
 }

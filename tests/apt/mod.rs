@@ -7,6 +7,7 @@
 //! | `arcs` | arcs and helices of every plane, evaluated from the text; damaged ones |
 //! | `meaning` | arcs, cycles, feeds and units by their closed forms |
 //! | `orientation` | five axes: tip and direction, second curves, damage |
+//! | `planes` | 3+2 axes: tilted planes, counted back from the text; damage |
 //! | `splines` | the NURBS forms of CATIA, NX and Creo |
 //! | `bad` | input that is none, and what is told |
 //! | `corpus` | real files of CAM systems, where they are there |
@@ -17,6 +18,7 @@ mod corpus;
 mod golden;
 mod meaning;
 mod orientation;
+mod planes;
 mod splines;
 mod statements;
 

@@ -49,6 +49,8 @@ impl Terms {
             &frame.dwell,
             &frame.tip_control,
             &frame.tip_control_end,
+            &frame.plane,
+            &frame.plane_end,
             &frame.shift,
         ];
         let all = [&frame.header, &frame.footer, &frame.close].into_iter().chain(calls);
@@ -137,6 +139,9 @@ impl Terms {
                     ("home", &self.home),
                     ("words", "A90"),
                     ("seconds", "2.5"),
+                    ("first", "90"),
+                    ("second", "-12.5"),
+                    ("third", "0"),
                 ];
                 random.pick(&self.beginnings).map(|template| template.fill(&values))
             }
@@ -152,6 +157,9 @@ fn is_filled_in(template: &Template, line: &str) -> bool {
             "tool" => value.bytes().all(|b| b.is_ascii_digit()),
             "label" | "i" | "number" => value.bytes().all(|b| b.is_ascii_digit()),
             "home" | "words" => value.starts_with(|c: char| c.is_ascii_uppercase()),
+            "first" | "second" | "third" => {
+                value.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-'))
+            }
             "rpm" | "seconds" => value.bytes().all(|b| b.is_ascii_digit() || b == b'.'),
             _ => true,
         })

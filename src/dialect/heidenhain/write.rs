@@ -58,6 +58,7 @@ impl Writer<'_> {
                 // A program can be restarted at each tool.
                 Part::Tool(..) => self.modal.forget(),
                 Part::Spindle | Part::TipControl(_) => {}
+                Part::Plane => self.modal.forget(),
                 Part::Home(axis) => self.modal.lose(axis),
                 Part::Shift(shifts) => self.modal.shift(shifts),
                 Part::Remark(text) => self.remark(text),

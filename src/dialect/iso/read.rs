@@ -163,6 +163,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             }
             if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
                 reader.tool_line(body, &offset);
+                reader.home_line(body);
                 if reader.assembler.begins_tip_control() {
                     // Its lines hold the length of the tool.
                     reader.offset_due = None;
@@ -202,6 +203,14 @@ impl Reader<'_> {
                 self.offset_due = self.assembler.tool();
                 self.offset_tool = None;
             }
+        }
+    }
+
+    /// A retraction in machine coordinates may end the length of the tool, so that it is called again before the next move of Z.
+    fn home_line(&mut self, body: &str) {
+        let first = self.assembler.machine.frame.home.first();
+        if first.is_some_and(|template| template.matched(body).is_some()) && !self.assembler.leads_tip() {
+            self.offset_due = self.offset_due.or(self.offset_tool.take());
         }
     }
 

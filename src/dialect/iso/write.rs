@@ -91,6 +91,10 @@ impl Writer<'_> {
                     self.led = false;
                     self.offset_due = self.offset_tool;
                 }
+                Part::Plane => {
+                    self.modal.forget();
+                    self.plane = None;
+                }
                 Part::Home(axis) => {
                     self.modal.lose(*axis);
                     self.modal.motion = None;
@@ -135,6 +139,7 @@ impl Writer<'_> {
                 | Part::Fixed(_)
                 | Part::Shift(_)
                 | Part::Body
+                | Part::Plane
                 | Part::TipControl(_) => self.through,
                 Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::Rapid(_) => false,
                 Part::Cut(cut) => matches!(cut.curve, Written::Through(..)),

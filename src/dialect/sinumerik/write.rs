@@ -88,6 +88,7 @@ impl Writer<'_> {
                 Part::Spindle => {}
                 // The machine's own lines say how the tool turns.
                 Part::TipControl(_) => self.second = false,
+                Part::Plane => self.forget(),
                 Part::Home(axis) => {
                     self.modal.lose(axis);
                     self.modal.motion = None;

@@ -10,6 +10,9 @@ use crate::units::{Axes, Position};
 /// How many coordinates a place has: X Y Z of the tip.
 pub(super) const AXES: usize = 3;
 
+/// The axis that retracts.
+const Z: usize = 2;
+
 /// Along Z.
 pub(super) const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
@@ -166,6 +169,8 @@ impl Builder {
 
     /// Calls a tool.
     pub(super) fn tool(&mut self, number: u32, span: Span) {
+        // CAM systems leave it to the post to bring the tool away before it is changed.
+        self.step(Step::Home(Z), span);
         self.step(Step::Tool(number), span);
         self.told = false;
     }
@@ -273,9 +278,12 @@ impl Builder {
             let message = "the file has no move";
             return Err(Diagnostic::error("moves-missing", message).at(whole, "").into());
         }
+        if self.steps.iter().any(|located| matches!(located.step, Step::Tool(_))) {
+            self.steps.push(Located { step: Step::Home(Z), span: whole });
+        }
         let all = Axes::with_direction();
         let axes = Axes::new(&all.as_slice()[..self.stride()]).ok_or_else(Diagnostics::new)?;
         let program = Program { name, number: 1, axes, steps: self.steps };
-        Ok(Intent { program, tolerance: None, name_span, radius: None, warnings })
+        Ok(Intent { program, tolerance: None, name_span, radius: None, tilt_error: 0.0, warnings })
     }
 }

@@ -165,6 +165,7 @@ impl CutterJob {
             tolerance: self.tolerance,
             name_span: self.name_span,
             radius: None,
+            tilt_error: 0.0,
             warnings: Diagnostics::new(),
         }
     }

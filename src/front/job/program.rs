@@ -152,6 +152,7 @@ impl Job {
             tolerance: self.tolerance,
             name_span: self.name_span,
             radius: self.radius,
+            tilt_error: 0.0,
             warnings,
         }
     }

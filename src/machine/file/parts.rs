@@ -3,6 +3,7 @@
 use super::Reader;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
+use crate::geom::rotation::Order;
 use crate::machine::keys::{
     AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile, TextFile,
 };
@@ -221,6 +222,14 @@ impl Reader {
                 }
             },
         };
+        let plane_order = file.plane_order.as_ref().and_then(|word| {
+            let order = Order::new(word.get_ref());
+            if order.is_none() {
+                let message = "plane_order is three of x, y and z, and none follows itself: \"xyz\", \"zxz\"";
+                self.error("plane-order", message, word.span());
+            }
+            order
+        });
         let digits = file.digits.as_ref().map(|digits| *digits.get_ref());
         let second = file.second_curve.as_ref().map(|second| *second.get_ref());
         Some(Orientation {
@@ -228,6 +237,7 @@ impl Reader {
             tolerance: self.or(tolerance, base.map(|b| b.tolerance), "orientation.tolerance")?,
             turn,
             second_curve: self.or(second, base.map(|b| b.second_curve), "orientation.second_curve")?,
+            plane_order: self.or(plane_order, base.map(|b| b.plane_order), "orientation.plane_order")?,
             length: self.or(length, base.map(|b| b.length), "orientation.length")?,
             safe_height: file
                 .safe_height
@@ -272,6 +282,37 @@ impl Reader {
             self.diagnostics.push(
                 Diagnostic::error("orientation-turn", message)
                     .hint("state both: [orientation] turn, and [program] tip_control with its word"),
+            );
+        }
+    }
+
+    /// One of the lines of a tilted plane states its three angles, and where the retraction before them ends the length of the
+    /// tool they call it again.
+    pub(super) fn tilts(&mut self, frame: &Frame) {
+        if frame.plane.is_empty() {
+            return;
+        }
+        let angles = |line: &Template| {
+            let mut angles: Vec<String> =
+                line.variables().filter(|name| *name != "tool").map(str::to_owned).collect();
+            angles.sort_unstable();
+            angles
+        };
+        let stating: Vec<Vec<String>> =
+            frame.plane.iter().map(angles).filter(|angles| !angles.is_empty()).collect();
+        if stating != [["first", "second", "third"]] {
+            let message = "one line of plane states {first}, {second} and {third}, each once";
+            self.diagnostics.push(Diagnostic::error("plane-angles", message));
+        }
+        let says = |lines: &[Template], is: fn(&str) -> bool| {
+            lines.iter().any(|line| line.0.split_whitespace().any(is))
+        };
+        let length = |word: &str| word != "D0" && word.starts_with('D') && word[1..].parse::<u32>().is_ok();
+        if says(&frame.home, |word| word == "D0") && !says(&frame.plane, length) {
+            let message = "D0 in home ends the length of the tool, and plane does not call it again";
+            self.diagnostics.push(
+                Diagnostic::error("plane-length", message)
+                    .hint("put D1 before the line that tilts the plane"),
             );
         }
     }
@@ -404,6 +445,8 @@ impl Reader {
                 "tip_control_end",
                 &[],
             )?,
+            plane: lines(self, file.plane, |b| &b.plane, "plane", &["first", "second", "third", "tool"])?,
+            plane_end: lines(self, file.plane_end, |b| &b.plane_end, "plane_end", &[])?,
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
             footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
             subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,

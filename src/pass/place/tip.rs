@@ -1,6 +1,6 @@
 //! Where the tip of a tilted tool is led from: what stands between its call and its first move, and behind its last.
 //!
-//! Z retracts before each tool is called. Behind the call the lines of the machine file lead the tip, the tool turns with
+//! The input retracts Z before each tool is called. Behind the call the lines of the machine file lead the tip, the tool turns with
 //! its tip at safe height, and goes to where its first move begins along its own axis. Behind its last move it goes up to
 //! safe height the same way, before the tip is let go.
 //!
@@ -61,7 +61,6 @@ pub(super) fn lead(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     }
     if let Some(span) = last.filter(|_| walk.led) {
         walk.let_go(span)?;
-        walk.push(Step::Home(Z), span);
     }
     intent.program.steps = walk.all;
     Ok(())
@@ -75,12 +74,11 @@ impl Walk {
     fn step(&mut self, located: Located<f64, Curve>) -> Result<(), Diagnostics> {
         let span = located.span;
         match &located.step {
-            Step::Tool(_) => {
+            Step::Home(_) | Step::Tool(_) => {
                 if self.led {
                     self.let_go(span)?;
                 }
-                self.push(Step::Home(Z), span);
-                self.called = true;
+                self.called |= matches!(located.step, Step::Tool(_));
             }
             Step::Rapid(targets) => {
                 let mut place = self.at.unwrap_or([0.0; MAX_AXES]);
@@ -102,12 +100,7 @@ impl Walk {
                     self.at = Some(end);
                 }
             }
-            Step::Comment(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => {}
+            Step::Comment(_) | Step::Spindle(_) | Step::Coolant | Step::Shift(_) | Step::Auxiliary(_) => {}
         }
         self.all.push(located);
         Ok(())

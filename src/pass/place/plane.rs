@@ -1,0 +1,340 @@
+//! A tool that turns only at rapid stands square to a plane while it works: 3+2 axes. Such a program needs no direction in its
+//! blocks and no transformation that leads the tip: the plane is tilted, and X Y Z count in it.
+//!
+//! # What is written
+//!
+//! Wherever the tool turns it goes up along its own axis as far as it has been in this plane, retracts in Z of the machine,
+//! and the lines of the machine file tilt the next plane. Over the work it goes in X and Y of that plane first, and then down
+//! along itself. Where a tool stands upright in such a program its plane is stated too, with three angles of 0: the machine
+//! may be tilted.
+//!
+//! # Numbers
+//!
+//! The angles are chosen in the decimals that the text has, and places are counted in the plane of these angles. So no
+//! rounding moves a place; the tool's direction alone is off, by half a unit of the last decimal or so, and that is stated.
+
+use crate::decimal::{Decimal, round_units};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::arc::{Arc, Plane};
+use crate::geom::direction;
+use crate::geom::nurbs::Nurbs;
+use crate::geom::rotation::Rotation;
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Step};
+use crate::machine::Machine;
+use crate::source::Span;
+use crate::units::{Axes, DEGREES, Position};
+
+/// The third axis: along the tool.
+const Z: usize = 2;
+
+/// How many coordinates a place has.
+const PLACE: usize = 3;
+
+/// Directions this near to each other are one, radians: a unit of the sixth decimal.
+const SAME: f64 = 1.0e-6;
+
+/// How far an axis of an arc may be from one of the plane's: what rounding leaves of a right angle.
+const SQUARE: f64 = 1.0e-9;
+
+type All = Vec<Located<f64, Curve>>;
+
+/// Writes an intent of five axes in tilted planes, where the machine has them and the tool turns at rapid only.
+///
+/// # Errors
+/// No tool is called, the machine file states no home for Z, or rounding turns the tool too far.
+pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
+    let Some(first) = intent.program.axes.direction() else { return Ok(()) };
+    let counts = |name: &str| {
+        machine
+            .axes
+            .as_slice()
+            .iter()
+            .any(|(axis, _)| axis.as_str() == name && !machine.limits(*axis).reversed)
+    };
+    if machine.frame.plane.is_empty() || !["X", "Y", "Z"].into_iter().all(counts) {
+        return Ok(());
+    }
+    let Some(axes) = Axes::new(&intent.program.axes.as_slice()[..first]) else { return Ok(()) };
+    if !turns_at_rapid(&intent.program.steps, first) {
+        return Ok(());
+    }
+    let upright = machine.with_axes(&axes)?;
+    let retracts = upright.home(Z).is_some() && !machine.frame.home.is_empty();
+    let mut walk =
+        Walk { first, machine, retracts, all: Vec::new(), plane: None, at: None, called: false, error: 0.0 };
+    let steps = &intent.program.steps;
+    for located in steps {
+        if walk.step(located)?.is_none() {
+            // An arc that no plane of the control fits: its tip is led.
+            return Ok(());
+        }
+    }
+    if let Some(last) = steps.last() {
+        walk.leave(last.span);
+    }
+    let (all, error) = (walk.all, walk.error);
+    intent.program.steps = all;
+    intent.program.axes = axes;
+    intent.tilt_error = error;
+    let (degrees, allowed) = (error * DEGREES, machine.orientation.tolerance);
+    if degrees <= allowed {
+        return Ok(());
+    }
+    let message = format!(
+        "angles of {} decimals turn the tool by up to {degrees:.4} degrees from where it should be, more than {allowed}",
+        machine.digits.rotary
+    );
+    Err(Diagnostic::refusal("direction-too-far", message)
+        .hint("[digits] rotary and [orientation] tolerance of the machine file")
+        .into())
+}
+
+/// Whether every path keeps the direction with which the rapid before it came, and each tool comes by a rapid.
+fn turns_at_rapid(steps: &[Located<f64, Curve>], first: usize) -> bool {
+    let mut stands: Option<[f64; 3]> = None;
+    steps.iter().all(|located| match &located.step {
+        Step::Tool(_) => {
+            stands = None;
+            true
+        }
+        Step::Rapid(targets) => {
+            stands = named_direction(targets, first);
+            stands.is_some()
+        }
+        Step::Cut(cut) => {
+            let keeps = |p: &Position| {
+                stands.is_some_and(|d| direction::angle(&d, &[p[first], p[first + 1], p[first + 2]]) <= SAME)
+            };
+            match &cut.curve {
+                Curve::Lines(line) => keeps(&line.start) && line.points().all(|p| keeps(&p)),
+                Curve::Arc(arc) => keeps(&arc.start()) && keeps(&arc.end()),
+                Curve::Nurbs(nurbs) => nurbs.points().iter().all(keeps),
+                // CL data has none of these.
+                Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
+                    false
+                }
+            }
+        }
+        Step::Comment(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Auxiliary(_) => true,
+    })
+}
+
+/// The direction that a rapid names.
+fn named_direction(targets: &[(usize, f64)], first: usize) -> Option<[f64; 3]> {
+    let component = |i: usize| targets.iter().find(|(axis, _)| *axis == first + i).map(|(_, x)| *x);
+    Some([component(0)?, component(1)?, component(2)?])
+}
+
+/// A plane that is in force.
+struct Tilted {
+    /// The direction that was asked for.
+    asked: [f64; 3],
+    rotation: Rotation,
+    /// The greatest height in it so far, mm.
+    top: f64,
+}
+
+struct Walk<'m> {
+    first: usize,
+    machine: &'m Machine,
+    /// Whether Z has a home to retract to.
+    retracts: bool,
+    all: All,
+    plane: Option<Tilted>,
+    /// Where the input takes the tip to be, in the work's own coordinates.
+    at: Option<[f64; 3]>,
+    called: bool,
+    error: f64,
+}
+
+impl Walk<'_> {
+    fn push(&mut self, step: Step<f64, Curve>, span: Span) {
+        self.all.push(Located { step, span });
+    }
+
+    /// Takes a step; none where a curve has no place in a plane.
+    fn step(&mut self, located: &Located<f64, Curve>) -> Result<Option<()>, Diagnostics> {
+        let span = located.span;
+        match &located.step {
+            Step::Tool(_) => {
+                self.leave(span);
+                self.called = true;
+                self.push(located.step.clone(), span);
+            }
+            Step::Rapid(targets) => {
+                let named = |i: usize| targets.iter().find(|(axis, _)| *axis == i).map(|(_, to)| *to);
+                let place = [0, 1, 2].map(|i| named(i).or(self.at.map(|at| at[i])));
+                let ([Some(x), Some(y), Some(z)], Some(asked)) =
+                    (place, named_direction(targets, self.first))
+                else {
+                    return Ok(None);
+                };
+                self.rapid([x, y, z], asked, span)?;
+            }
+            Step::Cut(cut) => {
+                let Some(plane) = &mut self.plane else { return Ok(None) };
+                let Some(curve) = plane.counted(&cut.curve) else { return Ok(None) };
+                let (end, top) = extent(&curve);
+                plane.top = plane.top.max(top);
+                self.at = Some(plane.rotation.out(end));
+                self.push(Step::Cut(Cut { feed: cut.feed, role: cut.role, curve }), span);
+            }
+            // The plane is left by way of it.
+            Step::Home(_) if self.plane.is_some() => self.leave(span),
+            Step::Comment(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => self.push(located.step.clone(), span),
+        }
+        Ok(Some(()))
+    }
+
+    /// Goes to a place at rapid with the tool in a direction.
+    fn rapid(&mut self, place: [f64; 3], asked: [f64; 3], span: Span) -> Result<(), Diagnostics> {
+        let turns = self.plane.as_ref().is_none_or(|plane| SAME < direction::angle(&plane.asked, &asked));
+        if turns {
+            self.leave(span);
+            self.enter(asked, span)?;
+        }
+        let Some(plane) = &mut self.plane else { return Ok(()) };
+        self.error = self.error.max(direction::angle(&plane.rotation.axis(), &asked));
+        let to = plane.rotation.into_frame(place);
+        plane.top = plane.top.max(to[Z]);
+        let from = self.at.filter(|_| !turns).map(|at| plane.rotation.into_frame(at));
+        self.at = Some(place);
+        if turns {
+            self.push(Step::Rapid((0..PLACE).map(|i| (i, to[i])).collect()), span);
+            return Ok(());
+        }
+        let digits = self.machine.digits.linear;
+        let moves = |i: &usize| from.is_none_or(|from| !same(from[*i], to[*i], digits));
+        let mut targets: Vec<(usize, f64)> = (0..PLACE).filter(moves).map(|i| (i, to[i])).collect();
+        if targets.is_empty() {
+            targets.push((0, to[0]));
+        }
+        self.push(Step::Rapid(targets), span);
+        Ok(())
+    }
+
+    /// Tilts the plane square to a direction.
+    fn enter(&mut self, asked: [f64; 3], span: Span) -> Result<(), Diagnostics> {
+        if !self.called {
+            let message = "a plane is to be tilted, and no tool is called: its length is not known";
+            return Err(Diagnostic::error("tool-missing", message).at(span, "").into());
+        }
+        if !self.retracts {
+            let message = "the tool turns here, and the machine file states no place in Z where it is clear";
+            return Err(Diagnostic::refusal("home-missing", message)
+                .at(span, "")
+                .hint("state [axis.Z] home, or plane = [] under [program] where the tip is to be led")
+                .into());
+        }
+        let order = self.machine.orientation.plane_order;
+        let digits = self.machine.digits.rotary;
+        let angles = Rotation::level(asked).angles(order).map(|angle| rounded(angle, digits));
+        self.push(Step::Auxiliary(Auxiliary::Plane(angles)), span);
+        let rotation = Rotation::of(order, angles);
+        self.plane = Some(Tilted { asked, rotation, top: f64::NEG_INFINITY });
+        Ok(())
+    }
+
+    /// Leaves the plane: up along the tool, home in Z, and no plane any more.
+    fn leave(&mut self, span: Span) {
+        let Some(plane) = self.plane.take() else { return };
+        let height = self.at.map(|at| plane.rotation.into_frame(at)[Z]);
+        if let Some(height) = height
+            && height < plane.top
+            && !same(height, plane.top, self.machine.digits.linear)
+        {
+            self.push(Step::Rapid(vec![(Z, plane.top)]), span);
+        }
+        self.push(Step::Home(Z), span);
+        self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+    }
+}
+
+/// An angle in the decimals of the text.
+fn rounded(angle: f64, digits: u8) -> f64 {
+    Decimal::round(angle, digits).map_or(angle, Decimal::to_f64)
+}
+
+/// Whether two places of an axis are one in the text.
+fn same(a: f64, b: f64, digits: u8) -> bool {
+    round_units(a, digits) == round_units(b, digits)
+}
+
+/// Where a curve ends, and how high it goes at most.
+fn extent(curve: &Curve) -> ([f64; 3], f64) {
+    let place = |p: &Position| [p[0], p[1], p[2]];
+    match curve {
+        Curve::Lines(line) | Curve::Through(_, line) => {
+            let (mut end, mut top) = (line.start, line.start[Z]);
+            for point in line.points() {
+                top = top.max(point[Z]);
+                end = point;
+            }
+            (place(&end), top)
+        }
+        Curve::Arc(arc) => (place(&arc.end()), arc.range().1[Z]),
+        Curve::Nurbs(nurbs) => {
+            let points = nurbs.points();
+            let top = points.iter().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
+            (points.last().map_or([0.0; 3], place), top)
+        }
+        Curve::Polynomial(_) | Curve::Logarithmic(_) | Curve::Formula(_) => ([0.0; 3], f64::NEG_INFINITY),
+    }
+}
+
+impl Tilted {
+    /// A curve as the plane counts it; none where no word of a control fits it.
+    fn counted(&self, curve: &Curve) -> Option<Curve> {
+        let place = |p: &Position| {
+            let [x, y, z] = self.rotation.into_frame([p[0], p[1], p[2]]);
+            [x, y, z, 0.0, 0.0, 0.0]
+        };
+        Some(match curve {
+            Curve::Lines(line) => {
+                let mut counted = Polyline::new(place(&line.start), PLACE);
+                line.points().for_each(|point| counted.push(&place(&point)));
+                counted.rates.clone_from(&line.rates);
+                counted.lines.clone_from(&line.lines);
+                Curve::Lines(counted)
+            }
+            Curve::Arc(arc) => Curve::Arc(self.arc(arc, place)?),
+            Curve::Nurbs(nurbs) => Curve::Nurbs(Nurbs::mapped(nurbs, place)),
+            Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
+                return None;
+            }
+        })
+    }
+}
+
+impl Tilted {
+    /// An arc as the plane counts it; none where its axis is none of the plane's.
+    fn arc(&self, arc: &Arc, place: impl Fn(&Position) -> Position) -> Option<Arc> {
+        let [u, v, w] = arc.plane().axes();
+        let mut axis = [0.0; 3];
+        axis[w] = 1.0;
+        let axis = self.rotation.into_frame(axis);
+        let plane = [Plane::Xy, Plane::Zx, Plane::Yz]
+            .into_iter()
+            .find(|plane| 1.0 - axis[plane.axes()[2]].abs() <= SQUARE)?;
+        let [u_new, v_new, w_new] = plane.axes();
+        let sense = if 0.0 < axis[w_new] { arc.sense() } else { arc.sense().reversed() };
+        let mut center = arc.start();
+        [center[u], center[v]] = arc.center();
+        let (start, mut end, center) = (place(&arc.start()), place(&arc.end()), place(&center));
+        if arc.is_full() {
+            // A whole turn ends where it starts, whatever rounding made of a helix.
+            (end[u_new], end[v_new]) = (start[u_new], start[v_new]);
+        }
+        Arc::new(plane, sense, start, end, [center[u_new], center[v_new]]).ok()
+    }
+}

@@ -1,0 +1,348 @@
+//! 3+2 axes: the text of each dialect is counted back by the words of its control, with rotations of its own.
+
+use super::{cases, input, program};
+use splinepost::Output;
+use splinepost::diagnostic::Diagnostics;
+use splinepost::geom::elementary::{cos, sin};
+use splinepost::machine::Machine;
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::{Options, front, verify_program};
+use std::fs;
+
+const DIALECTS: [&str; 3] = ["sinumerik", "heidenhain", "mazak"];
+
+fn machine(text: &str) -> Machine {
+    crate::support::machine(text)
+}
+
+fn default(dialect: &str) -> Machine {
+    machine(&format!("extends = \"{dialect}\""))
+}
+
+fn case() -> String {
+    let all = cases();
+    let path = all.iter().find(|case| case.ends_with("nx-planes")).expect("the case");
+    fs::read_to_string(input(path)).expect("an input")
+}
+
+fn compiled(text: &str, machine: &Machine) -> Output {
+    program("nx", text, machine).unwrap_or_else(|errors| panic!("{}: {errors:?}", machine.name))
+}
+
+fn verified(input: &str, text: &str, machine: &Machine) -> Result<(), Diagnostics> {
+    let mut sources = Sources::new(Source::new("input.cl", input));
+    let id = sources.push(Source::new("program", text));
+    let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
+    verify_program(&sources, language, id, machine, &Options::default()).map(|_| ())
+}
+
+type Matrix = [[f64; 3]; 3];
+
+/// A rotation about X, Y or Z by its textbook matrix.
+fn about(axis: char, degrees: f64) -> Matrix {
+    let (c, s) = (cos(degrees.to_radians()), sin(degrees.to_radians()));
+    match axis {
+        'X' => [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+        'Y' => [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
+        _ => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
+    }
+}
+
+fn times(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+fn number(text: &str) -> f64 {
+    let digits: String =
+        text.chars().take_while(|c| c.is_ascii_digit() || matches!(c, '.' | '-' | '+')).collect();
+    digits.parse().expect(text)
+}
+
+/// The rotation that a line tilts its plane by, as the manual of its control says; none of another line.
+fn tilted(block: &str) -> Option<Matrix> {
+    let word = |name: &str| {
+        let mut numbers = block.split(' ').filter_map(|word| word.strip_prefix(name));
+        number(numbers.find(|rest| !rest.starts_with(char::is_alphabetic)).expect(name))
+    };
+    if let Some(arguments) = block.strip_prefix("CYCLE800(0,\"\",0,57,") {
+        // Mode 57: about X, the new Y, the newest Z.
+        let angles: Vec<f64> = arguments.split(',').skip(3).take(3).map(number).collect();
+        return Some(times(&times(&about('X', angles[0]), &about('Y', angles[1])), &about('Z', angles[2])));
+    }
+    if block.starts_with("PLANE SPATIAL") {
+        // About the axes that do not turn: first A, then B, then C.
+        let first = times(&about('Y', word("SPB")), &about('X', word("SPA")));
+        return Some(times(&about('Z', word("SPC")), &first));
+    }
+    if block.starts_with("G68.2 ") {
+        // Euler's angles: about Z, the new X, the newest Z.
+        return Some(times(&times(&about('Z', word("I")), &about('X', word("J"))), &about('Z', word("K"))));
+    }
+    None
+}
+
+/// Where the tip goes in the coordinates of the work, and where the tool points, straight from a text of lines.
+fn places(text: &str) -> Vec<([f64; 3], [f64; 3])> {
+    let mut plane = about('Z', 0.0);
+    let mut at = [f64::NAN; 3];
+    let mut places: Vec<([f64; 3], [f64; 3])> = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with([';', '('])) {
+        let block = line.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim();
+        if let Some(next) = tilted(block) {
+            (plane, at) = (next, [f64::NAN; 3]);
+            continue;
+        }
+        let beyond = ["SUPA", "M91", "G53", "G52", "CYCL", "G17", "BLK", ";"];
+        if beyond.iter().any(|word| block.contains(word)) {
+            continue;
+        }
+        let mut moved = false;
+        for word in block.split(' ') {
+            let axis = ["X", "Y", "Z"].iter().position(|name| {
+                word.strip_prefix(name).is_some_and(|rest| {
+                    rest.starts_with(['-', '+']) || rest.starts_with(|c: char| c.is_ascii_digit())
+                })
+            });
+            if let Some(axis) = axis {
+                at[axis] = number(&word[1..]);
+                moved = true;
+            }
+        }
+        if moved && at.iter().all(|x| x.is_finite()) {
+            let out = |p: [f64; 3]| std::array::from_fn(|i| (0..3).map(|j| plane[i][j] * p[j]).sum());
+            places.push((out(at), out([0.0, 0.0, 1.0])));
+        }
+    }
+    places
+}
+
+/// The places of GOTO with the direction that is in force.
+fn asked(text: &str) -> Vec<([f64; 3], [f64; 3])> {
+    let mut direction = [0.0, 0.0, 1.0];
+    let goto = text.lines().filter_map(|line| line.strip_prefix("GOTO/"));
+    goto.map(|line| {
+        let numbers: Vec<f64> = line.split(',').map(|number| number.trim().parse().expect(line)).collect();
+        if let [_, _, _, i, j, k] = numbers[..] {
+            direction = [i, j, k];
+        }
+        ([numbers[0], numbers[1], numbers[2]], direction)
+    })
+    .collect()
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
+}
+
+/// Every place of the input, in order, is a place of the program; between them stand the ways up along the tool.
+fn goes_where_asked(input: &str, text: &str, dialect: &str) {
+    let mut left = places(text).into_iter();
+    for (tip, direction) in asked(input) {
+        let length = distance(&direction, &[0.0; 3]);
+        let unit = direction.map(|x| x / length);
+        // Half a unit of the fourth decimal in each axis is 8.7e-5 mm; as much in the last decimal of an angle, 1.5e-6 in
+        // each of three.
+        let met = left.any(|(p, d)| distance(&p, &tip) < 9.0e-5 && distance(&d, &unit) < 5.0e-6);
+        assert!(met, "{dialect}: {tip:?} {direction:?} is not met in\n{text}");
+    }
+}
+
+#[test]
+fn planes_are_those_of_the_controls() {
+    let input = case();
+    for dialect in DIALECTS {
+        let own = default(dialect);
+        let output = compiled(&input, &own);
+        goes_where_asked(&input, &output.text, dialect);
+        let report = output.report.expect("a proof");
+        assert!(0.0 < report.deviation.rad && report.deviation.rad < 1.0e-6, "{dialect}");
+        verified(&input, &output.text, &own).unwrap_or_else(|errors| panic!("{dialect}: {errors:?}"));
+    }
+}
+
+/// Any order of turns leads to the same places: what differs is X and Y of the plane.
+#[test]
+fn every_order_of_turns_is_proved() {
+    let input = case();
+    for order in ["xyz", "xzy", "yxz", "yzx", "zxy", "zyx", "xyx", "xzx", "yxy", "yzy", "zxz", "zyz"] {
+        let own = machine(&format!("extends = \"mazak\"\n[orientation]\nplane_order = \"{order}\"\n"));
+        let output = compiled(&input, &own);
+        let letters: Vec<char> = order.to_ascii_uppercase().chars().collect();
+        let mut turned = Vec::new();
+        for line in output.text.lines() {
+            // Written as Euler's angles, read as this order.
+            if let Some(words) = line.strip_prefix("G68.2 X0. Y0. Z0. I") {
+                let angles: Vec<f64> =
+                    words.split([' ', 'J', 'K']).filter(|w| !w.is_empty()).map(number).collect();
+                let first = times(&about(letters[0], angles[0]), &about(letters[1], angles[1]));
+                let r = times(&first, &about(letters[2], angles[2]));
+                turned.push([r[0][2], r[1][2], r[2][2]]);
+            }
+        }
+        let third = 1.0 / 3.0f64.sqrt();
+        let expected = [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [third; 3]];
+        assert_eq!(turned.len(), expected.len(), "{order}");
+        for (axis, expected) in turned.iter().zip(&expected) {
+            assert!(distance(axis, expected) < 5.0e-6, "{order}: {axis:?}");
+        }
+        verified(&input, &output.text, &own).unwrap_or_else(|errors| panic!("{order}: {errors:?}"));
+    }
+}
+
+/// Between two planes the tool is home in Z, and its length holds before it goes back to the work.
+#[test]
+fn the_tool_turns_where_it_is_clear() {
+    for (dialect, home, tilt, length) in [
+        ("sinumerik", "G0 SUPA Z0 D0", "CYCLE800(0", "D1"),
+        ("heidenhain", "L Z+0 R0 FMAX M91", "PLANE SPATIAL", ""),
+        ("mazak", "G0 G53 Z0.", "G68.2", "G43 H"),
+    ] {
+        let text = compiled(&case(), &default(dialect)).text;
+        let lines: Vec<&str> = text.lines().collect();
+        let tilts: Vec<usize> = (0..lines.len()).filter(|i| lines[*i].contains(tilt)).collect();
+        assert_eq!(tilts.len(), 3, "{text}");
+        for at in tilts {
+            let back = lines[..at].iter().rposition(|line| line.contains(home)).expect(home);
+            let moves = lines[back + 1..at].iter().filter(|line| {
+                let words: Vec<&str> = line.split(' ').collect();
+                !line.starts_with(['(', ';'])
+                    && words.iter().any(|word| word.starts_with(['X', 'Y', 'Z']) && *word != "Z")
+            });
+            assert_eq!(moves.count(), 0, "{text}");
+            let down = lines[at + 1..].iter().position(|line| line.contains('Z') && !line.contains("G68.2"));
+            let down = at + 1 + down.expect("a way down");
+            assert!(lines[back + 1..=down].iter().any(|line| line.contains(length)), "{text}");
+            // X and Y come first, in a block of their own.
+            assert!(
+                lines[at + 1..down].iter().any(|line| line.contains(" X") && line.contains(" Y")),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// A program without its block numbers, so that a line less is not told by them.
+fn unnumbered(text: &str) -> String {
+    let bare = |line: &str| {
+        let number = line.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit());
+        if line.starts_with('N') { format!("N{number}\n") } else { format!("{number}\n") }
+    };
+    text.split_terminator('\n').map(bare).collect()
+}
+
+fn numbered(bare: &str, dialect: &str) -> String {
+    let mut blocks = 0;
+    let mut line = |line: &str| match (dialect, line.strip_prefix('N')) {
+        ("sinumerik", Some(rest)) => {
+            blocks += 10;
+            format!("N{blocks}{rest}\n")
+        }
+        ("heidenhain", _) => {
+            blocks += 1;
+            format!("{}{line}\n", blocks - 1)
+        }
+        _ => format!("{line}\n"),
+    };
+    bare.split_terminator('\n').map(&mut line).collect()
+}
+
+#[test]
+fn damage_to_a_plane_is_refused() {
+    for (dialect, damages) in [
+        (
+            "sinumerik",
+            vec![
+                ("0,0,0,90,0,0,0,0,0,-1", "0,0,0,-90,0,0,0,0,0,-1"),
+                ("0,0,0,90,0,0,0,0,0,-1", "0,0,0,90.000001,0,0,0,0,0,-1"),
+                ("0,0,0,90,0,0,0,0,0,-1", "0,0,0,0,90,0,0,0,0,-1"),
+                (",0,57,0,0,0,90", ",0,27,0,0,0,90"),
+                ("N D1\nN CYCLE800(0,\"\",0,57,0,0,0,90", "N CYCLE800(0,\"\",0,57,0,0,0,90"),
+                ("N CYCLE800()\n", ""),
+                ("N G0 SUPA Z0 D0\nN CYCLE800()", "N CYCLE800()"),
+            ],
+        ),
+        (
+            "heidenhain",
+            vec![
+                ("SPA+90", "SPA-90"),
+                ("SPA+90 SPB+0", "SPA+0 SPB+90"),
+                ("SPC+135", "SPC+134.9999"),
+                ("TURN FMAX", "STAY"),
+                ("M91\n PLANE RESET STAY\n", "M91\n"),
+                (" L Z+0 R0 FMAX M91\n PLANE RESET", " PLANE RESET"),
+            ],
+        ),
+        (
+            "mazak",
+            vec![
+                ("I0. J90. K0.", "I0. J-90. K0."),
+                ("I0. J90. K0.", "I0. J90. K1."),
+                ("I135.", "I-45."),
+                ("J90. K0.\nG53.1\n", "J90. K0.\n"),
+                ("G69\nG68.2 X0. Y0. Z0. I0. J90.", "G68.2 X0. Y0. Z0. I0. J90."),
+                ("G43 H1 Z80.", "Z80."),
+                ("X0. Y0. Z0. I135.", "X1. Y0. Z0. I135."),
+            ],
+        ),
+    ] {
+        let (input, own) = (case(), default(dialect));
+        let text = compiled(&input, &own).text;
+        assert_eq!(numbered(&unnumbered(&text), dialect), text);
+        for (from, to) in damages {
+            let bare = unnumbered(&text);
+            assert!(bare.contains(from), "{dialect}: {from} stands nowhere in\n{bare}");
+            let damaged = numbered(&bare.replacen(from, to, 1), dialect);
+            assert!(verified(&input, &damaged, &own).is_err(), "{dialect}: {from:?} as {to:?} passes");
+        }
+    }
+}
+
+#[test]
+fn where_the_tool_turns_at_feed_its_tip_is_led() {
+    let slanted = case().replace("0.0000000,-1.0000000,0.0000000", "0.0000000,-0.6000000,0.8000000");
+    let last = "GOTO/40.0000,-48.0000,-30.0000";
+    let input = slanted.replace(&format!("{last}\n"), &format!("{last},0.0000000,-0.8000000,0.6000000\n"));
+    assert!(slanted != case() && input != slanted);
+    for (dialect, led, plane) in [
+        ("sinumerik", "TRAORI", "CYCLE800"),
+        ("heidenhain", "M128", "PLANE SPATIAL"),
+        ("mazak", "G43.5", "G68.2"),
+    ] {
+        let text = compiled(&input, &default(dialect)).text;
+        assert!(text.contains(led) && !text.contains(plane), "{text}");
+        // So it is where a machine has no planes.
+        let without = machine(&format!("extends = \"{dialect}\"\n[program]\nplane = []\n"));
+        let text = compiled(&slanted, &without).text;
+        assert!(text.contains(led) && !text.contains(plane), "{text}");
+    }
+}
+
+#[test]
+fn a_plane_needs_a_home_and_a_tool() {
+    let refused = |input: &str, machine: &Machine| {
+        program("nx", input, machine).map_or_else(|errors| errors.0[0].id, |output| panic!("{}", output.text))
+    };
+    let homeless = machine("extends = \"heidenhain\"\n[program]\nhome = []\n");
+    assert_eq!(refused(&case(), &homeless), "home-missing");
+    let toolless: String = case().split_inclusive('\n').filter(|line| !line.starts_with("LOAD")).collect();
+    assert_eq!(refused(&toolless, &default("heidenhain")), "tool-missing");
+    let coarse = machine("extends = \"heidenhain\"\n[digits]\nrotary = 0\n[orientation]\ntolerance = 0.01\n");
+    assert_eq!(refused(&case(), &coarse), "direction-too-far");
+}
+
+#[test]
+fn lines_of_a_plane_say_its_angles_and_the_length() {
+    let told = |lines: &str| {
+        let text = format!("extends = \"sinumerik\"\n{lines}");
+        Machine::parse(&text, SourceId::INPUT).map_or_else(|e| e.0[0].id, |_| "")
+    };
+    assert_eq!(told("[program]\nplane = [\"D1\", \"ROT X{first} Y{second} Z{third}\"]\n"), "");
+    assert_eq!(told("[program]\nplane = [\"ROT X{first} Y{second} Z{third}\"]\n"), "plane-length");
+    assert_eq!(told("[program]\nplane = [\"D1\", \"ROT X{first} Y{second}\"]\n"), "plane-angles");
+    assert_eq!(
+        told("[program]\nplane = [\"D1\", \"ROT X{first}\", \"AROT Y{second} Z{third}\"]\n"),
+        "plane-angles"
+    );
+    assert_eq!(told("[orientation]\nplane_order = \"xxz\"\n"), "plane-order");
+    assert_eq!(told("[orientation]\nplane_order = \"abc\"\n"), "plane-order");
+}
