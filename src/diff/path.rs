@@ -17,7 +17,7 @@ use crate::geom::follow::{Meeting, Rule, Stream};
 use crate::machine::{RotaryFeed, Turn};
 use crate::pass::stretch::{counted_length, linear_length};
 use crate::source::Span;
-use crate::units::{DEGREES, Kind, MAX_AXES};
+use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 use crate::verify::Status;
 
 /// Two paths take the same time where their times differ by no more than this share.
@@ -74,6 +74,13 @@ impl<'s, 'a> Run<'s, 'a> {
                 metric.scaled(&piece)
             })
         })
+    }
+
+    /// The greatest distance of its control points from zero, mm.
+    fn reach(&self) -> f64 {
+        let size = |p: &Position| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let of = |piece: Bezier| piece.control_points().iter().map(size).fold(0.0, f64::max);
+        self.parts.iter().flat_map(|part| part.pieces().map(of)).fold(0.0, f64::max)
     }
 
     /// Whether it turns a rotary axis.
@@ -181,9 +188,12 @@ impl<'a> Walk<'_, 'a> {
         let mut slip: Option<Slip> = None;
         let same_turn = turn_of(self.a) == turn_of(self.b);
         let stream = Stream::new(a.pieces(&metric), b.pieces(&metric), rule);
+        // Planes that differ a little move what is far from zero.
+        let tilted = if self.tilt == 0.0 { 0.0 } else { self.tilt * a.reach().max(b.reach()) };
         for meeting in stream {
             let [i, j] = meeting.at;
-            let bound = self.bound(&a, &b, &meeting, &metric, same_turn);
+            let mut bound = self.bound(&a, &b, &meeting, &metric, same_turn);
+            bound.mm += tilted;
             if bound.mm <= self.tolerance && bound.rad <= rule.turn {
                 if let Some(parting) = parting.take() {
                     self.part(&a, &b, &parting);

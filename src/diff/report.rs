@@ -30,6 +30,8 @@ pub struct Figures {
     pub deviation_mm: Option<f64>,
     /// The same in rotary axes or in the direction of the tool, radians.
     pub deviation_rad: Option<f64>,
+    /// The greatest angle between tilted planes, degrees, where there are some.
+    pub planes_deg: Option<f64>,
     /// Where the first program is farthest from the second.
     pub farthest_a: Option<Place>,
     /// Where the second program is then.
@@ -91,6 +93,7 @@ impl Figures {
             status: found.status.word(),
             deviation_mm: some(found.deviation.mm),
             deviation_rad: some(found.deviation.rad),
+            planes_deg: found.planes.map(|planes| planes * DEGREES),
             farthest_a: None,
             farthest_b: None,
             paths: found.paths,
@@ -150,6 +153,12 @@ impl Figures {
                 text,
                 "  deviation  {mm:.2e} mm{angle}, {} (tolerance {} mm){farthest}",
                 self.status, self.tolerance
+            );
+        }
+        if let Some(planes) = self.planes_deg {
+            let _ = writeln!(
+                text,
+                "  planes     tilted alike within {planes:.2e} degrees, which the deviation holds"
             );
         }
         for note in &self.notes {

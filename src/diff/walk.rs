@@ -13,9 +13,6 @@ use crate::source::Span;
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 use crate::verify::Status;
 
-/// Two planes are one where no component of their axes differs by more: rounding, and far less than any decimal of an angle.
-const SAME_PLANE: f64 = 1.0e-12;
-
 /// So many differences are told.
 const MOST_TOLD: usize = 5;
 
@@ -51,6 +48,8 @@ pub(super) struct Found {
     pub(super) timed: usize,
     /// mm.
     pub(super) length: f64,
+    /// The greatest angle between tilted planes, radians, where there are some.
+    pub(super) planes: Option<f64>,
 }
 
 impl Found {
@@ -66,6 +65,7 @@ impl Found {
             switches: 0,
             timed: 0,
             length: 0.0,
+            planes: None,
         }
     }
 
@@ -131,6 +131,8 @@ pub(super) struct Walk<'s, 'a> {
     pub(super) turn: f64,
     pub(super) radius: f64,
     pub(super) metric: Metric,
+    /// How far the tilted planes are from each other in which both count here, as a share of a place's distance from zero.
+    pub(super) tilt: f64,
     pub(super) found: Found,
 }
 
@@ -140,7 +142,7 @@ impl<'s, 'a> Walk<'s, 'a> {
         let kinds: Vec<Kind> = a.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
         let turn = if 0.0 < turn { turn } else { tolerance / DEGREES };
         let metric = Metric::with_direction(&kinds, radius, tolerance / turn);
-        Walk { a, b, tolerance, turn, radius, metric, found: Found::new() }
+        Walk { a, b, tolerance, turn, radius, metric, tilt: 0.0, found: Found::new() }
     }
 
     pub(super) fn run(mut self) -> Found {
@@ -192,7 +194,10 @@ impl<'s, 'a> Walk<'s, 'a> {
             (Item::Switch(own, _), Item::Switch(other, _)) => self.same_switch(own, other),
             (Item::Rapid(own, _), Item::Rapid(other, _)) => {
                 (0..MAX_AXES).all(|axis| match (own[axis], other[axis]) {
-                    (Some(own), Some(other)) => self.same_number(own, other, self.axis_digits(axis)),
+                    (Some(own_at), Some(other_at)) => {
+                        self.same_number(own_at, other_at, self.axis_digits(axis))
+                            || (self.tilt != 0.0 && self.same_tilted(own, axis, own_at - other_at))
+                    }
                     (None, None) => true,
                     (Some(_), None) | (None, Some(_)) => false,
                 })
@@ -209,8 +214,26 @@ impl<'s, 'a> Walk<'s, 'a> {
         }
     }
 
+    /// Whether a difference in an axis is what two planes that differ a little make of it.
+    fn same_tilted(&self, place: &[Option<f64>; MAX_AXES], axis: usize, difference: f64) -> bool {
+        let far = place.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        let units = self.axis_digits(axis).into_iter().flatten();
+        let rounding: f64 = units.map(|digits| 0.5 / power_of_ten(digits) as f64).sum();
+        difference.abs() <= self.tilt * far + rounding
+    }
+
     fn distance(&self, p: &Position, q: &Position) -> f64 {
         self.metric.distance(p, q).mm
+    }
+
+    /// How far a place may be moved by the difference of two tilted planes, as a share of its distance from zero: the length
+    /// of all differences of their axes together. It is at least the angle between them, radians.
+    fn between_planes(&self, own: [f64; 3], other: [f64; 3]) -> Option<f64> {
+        let plane =
+            |side: &Side<'a>, angles| Some(Rotation::of(side.machine?.orientation.plane_order, angles).0);
+        let (own, other) = (plane(self.a, own)?, plane(self.b, other)?);
+        let squares = own.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b) * (a - b));
+        Some(squares.sum::<f64>().sqrt())
     }
 
     fn same_switch(&self, own: &Step<f64, ()>, other: &Step<f64, ()>) -> bool {
@@ -221,13 +244,7 @@ impl<'s, 'a> Walk<'s, 'a> {
                 self.same_number(*own, *other, digits)
             }
             (Step::Auxiliary(Auxiliary::Plane(own)), Step::Auxiliary(Auxiliary::Plane(other))) => {
-                let plane = |side: &Side<'a>, angles: [f64; 3]| {
-                    Some(Rotation::of(side.machine?.orientation.plane_order, angles).0)
-                };
-                let (own, other) = (plane(self.a, *own), plane(self.b, *other));
-                own.zip(other).is_some_and(|(own, other)| {
-                    own.iter().flatten().zip(other.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME_PLANE)
-                })
+                self.between_planes(*own, *other).is_some_and(|angle| angle <= self.turn)
             }
             (own, other) => own == other,
         }
@@ -269,7 +286,10 @@ impl<'s, 'a> Walk<'s, 'a> {
             }
             _ if self.alike(own, other) => match own {
                 Item::Rapid(..) => self.found.rapids += 1,
-                Item::Switch(..) => self.found.switches += 1,
+                Item::Switch(step, _) => {
+                    self.found.switches += 1;
+                    self.tilted(step, other);
+                }
                 Item::Path(_) | Item::Points(..) => {}
             },
             _ => {
@@ -282,6 +302,21 @@ impl<'s, 'a> Walk<'s, 'a> {
                         .and_at(b.place_of(other), that)
                 });
             }
+        }
+    }
+
+    /// Notes how far the planes are from each other in which both count from here on.
+    fn tilted(&mut self, own: &Step<f64, ()>, other: &Item<'a>) {
+        match (own, other) {
+            (
+                Step::Auxiliary(Auxiliary::Plane(own)),
+                Item::Switch(Step::Auxiliary(Auxiliary::Plane(other)), _),
+            ) => {
+                self.tilt = self.between_planes(*own, *other).unwrap_or(0.0);
+                self.found.planes = Some(self.found.planes.map_or(self.tilt, |most| most.max(self.tilt)));
+            }
+            (Step::Auxiliary(Auxiliary::PlaneEnd), _) => self.tilt = 0.0,
+            _ => {}
         }
     }
 
