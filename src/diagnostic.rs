@@ -31,6 +31,10 @@ pub enum Severity {
     Error,
 }
 
+/// Places and what is there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Others(pub Vec<(Span, String)>);
+
 /// One thing to tell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
@@ -44,8 +48,8 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// What is there; may be shorter than the message, since it points.
     pub label: String,
-    /// Other places that belong to it, in any text, and what is there.
-    pub others: Vec<(Span, String)>,
+    /// Other places that belong to it, in any text, and what is there; most have none, and a result is no larger for it.
+    pub others: Option<Box<Others>>,
     /// What to do.
     pub hints: Vec<String>,
 }
@@ -58,7 +62,7 @@ impl Diagnostic {
             message: message.into(),
             span: None,
             label: String::new(),
-            others: Vec::new(),
+            others: None,
             hints: Vec::new(),
         }
     }
@@ -94,8 +98,13 @@ impl Diagnostic {
     /// Points at another place too.
     #[must_use]
     pub fn and_at(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
-        self.others.push((span, label.into()));
+        self.others.get_or_insert_default().0.push((span, label.into()));
         self
+    }
+
+    /// The other places.
+    pub fn others(&self) -> impl Iterator<Item = &(Span, String)> {
+        self.others.iter().flat_map(|others| &others.0)
     }
 
     /// Adds a way out.
@@ -199,7 +208,7 @@ impl Diagnostics {
                 level.primary_title(diagnostic.message.as_str()).id(diagnostic.id),
             );
             let first = diagnostic.span.map(|span| (span, &diagnostic.label));
-            let others = diagnostic.others.iter().map(|(span, label)| (*span, label));
+            let others = diagnostic.others().map(|(span, label)| (*span, label));
             for (i, (span, label)) in first.into_iter().chain(others).enumerate() {
                 let Some(source) = sources.get(span.source) else { continue };
                 let (window, first_line, range) = window(&source.text, span);
@@ -245,8 +254,7 @@ impl Diagnostics {
                 label: place.map(|_| diagnostic.label.as_str()),
                 hints: &diagnostic.hints,
                 others: diagnostic
-                    .others
-                    .iter()
+                    .others()
                     .filter_map(|(span, label)| json_place(*span, label, sources))
                     .collect(),
             };

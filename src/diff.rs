@@ -120,7 +120,7 @@ fn behind(mut diagnostics: Diagnostics, count: usize) -> Diagnostics {
     let moved = |span: &mut Span| span.source = span.source.behind(count);
     for diagnostic in &mut diagnostics.0 {
         diagnostic.span.iter_mut().for_each(moved);
-        diagnostic.others.iter_mut().for_each(|(span, _)| moved(span));
+        diagnostic.others.iter_mut().flat_map(|others| &mut others.0).for_each(|(span, _)| moved(span));
     }
     diagnostics
 }

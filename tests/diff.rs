@@ -54,7 +54,7 @@ fn golden() -> Vec<(String, [String; 3])> {
 /// The lines of both texts that the first difference names.
 fn lines(found: &Comparison, b: &str, a: &str) -> [Vec<usize>; 2] {
     let first = &found.differences.0[0];
-    let spans = first.span.iter().chain(first.others.iter().map(|(span, _)| span));
+    let spans = first.span.iter().chain(first.others().map(|(span, _)| span));
     let mut lines = [Vec::new(), Vec::new()];
     for span in spans {
         let second = span.source != SourceId::INPUT;
@@ -260,14 +260,14 @@ fn feeds_tools_and_switches_are_told_by_name() {
 
 /// CL data of passes at rapids between.
 fn passes(order: &[usize]) -> String {
-    let mut text = String::from("PARTNO PASSES\nUNITS/MM\nLOADTL/1\nSPINDL/3000,RPM,CLW\n");
-    for k in order {
+    let pass = |k: &usize| {
         let y = 5 * k;
-        text += &format!(
+        format!(
             "RAPID\nGOTO/0,{y},50\nRAPID\nGOTO/0,{y},2\nFEDRAT/500,MMPM\nGOTO/0,{y},0\nGOTO/30,{y},0\nRAPID\nGOTO/30,{y},50\n"
-        );
-    }
-    text + "FINI\n"
+        )
+    };
+    let all: String = order.iter().map(pass).collect();
+    format!("PARTNO PASSES\nUNITS/MM\nLOADTL/1\nSPINDL/3000,RPM,CLW\n{all}FINI\n")
 }
 
 #[test]

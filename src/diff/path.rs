@@ -8,7 +8,7 @@
 //! degrees and the other does not, or a line has its own time, the time of the whole path is compared.
 
 use super::side::{Part, Shape, Side};
-use super::walk::{Farthest, Walk};
+use super::walk::{Farthest, Walk, same_number};
 use crate::diagnostic::Diagnostic;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric};
@@ -265,10 +265,10 @@ impl<'a> Walk<'_, 'a> {
         let ((own, i), (other, j)) = (a.find(meeting.at[0]), b.find(meeting.at[1]));
         match (own.rate(i), other.rate(j)) {
             (Some(own), Some(other)) if meeting.part == [[0.0, 1.0]; 2] => {
-                self.same_number(own, other, self.feed_digits())
+                same_number(own, other, self.feed_digits())
             }
             (None, None) => match (own.feed, other.feed) {
-                (Some(own), Some(other)) => self.same_number(own, other, self.feed_digits()),
+                (Some(own), Some(other)) => same_number(own, other, self.feed_digits()),
                 (None, None) => true,
                 (Some(_), None) | (None, Some(_)) => false,
             },

@@ -373,7 +373,7 @@ impl<'a> Side<'a> {
         for item in &mut self.items {
             match item {
                 Item::Switch(Step::Home(axis), _) => {
-                    *axis = axes.index_of(self.axes.name(*axis)).unwrap_or(*axis)
+                    *axis = axes.index_of(self.axes.name(*axis)).unwrap_or(*axis);
                 }
                 Item::Switch(Step::Shift(shifts), _) => shifts
                     .iter_mut()

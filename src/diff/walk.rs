@@ -164,22 +164,6 @@ impl<'s, 'a> Walk<'s, 'a> {
         self.found
     }
 
-    /// Whether two numbers are the same in the decimals of both; an input's are those of the other.
-    pub(super) fn same_number(&self, a: f64, b: f64, digits: [Option<u8>; 2]) -> bool {
-        if a == b {
-            return true;
-        }
-        let coarser = match digits {
-            [Some(own), Some(other)] if own == other => return false,
-            [Some(own), Some(other)] => own.min(other),
-            [Some(digits), None] | [None, Some(digits)] => digits,
-            [None, None] => return false,
-        };
-        // Half a unit of the coarser, and what a float of these numbers is off.
-        let half = 0.5 / power_of_ten(coarser) as f64;
-        (a - b).abs() <= half + 4.0 * f64::EPSILON * a.abs().max(b.abs())
-    }
-
     pub(super) fn feed_digits(&self) -> [Option<u8>; 2] {
         [self.a, self.b].map(|side| side.digits.map(|(feed, _)| feed))
     }
@@ -195,7 +179,7 @@ impl<'s, 'a> Walk<'s, 'a> {
             (Item::Rapid(own, _), Item::Rapid(other, _)) => {
                 (0..MAX_AXES).all(|axis| match (own[axis], other[axis]) {
                     (Some(own_at), Some(other_at)) => {
-                        self.same_number(own_at, other_at, self.axis_digits(axis))
+                        same_number(own_at, other_at, self.axis_digits(axis))
                             || (self.tilt != 0.0 && self.same_tilted(own, axis, own_at - other_at))
                     }
                     (None, None) => true,
@@ -241,7 +225,7 @@ impl<'s, 'a> Walk<'s, 'a> {
         match (own, other) {
             (Step::Spindle(own), Step::Spindle(other))
             | (Step::Auxiliary(Auxiliary::Dwell(own)), Step::Auxiliary(Auxiliary::Dwell(other))) => {
-                self.same_number(*own, *other, digits)
+                same_number(*own, *other, digits)
             }
             (Step::Auxiliary(Auxiliary::Plane(own)), Step::Auxiliary(Auxiliary::Plane(other))) => {
                 self.between_planes(*own, *other).is_some_and(|angle| angle <= self.turn)
@@ -379,10 +363,26 @@ impl<'s, 'a> Walk<'s, 'a> {
         let mut farthest = Farthest::default();
         worst.into_iter().enumerate().for_each(|(i, bound)| farthest.take(bound, [i, i]));
         self.found.take(&farthest, || places(farthest.at[0]));
-        if own.feed.zip(other.feed).is_some_and(|(a, b)| !self.same_number(a, b, self.feed_digits())) {
+        if own.feed.zip(other.feed).is_some_and(|(a, b)| !same_number(a, b, self.feed_digits())) {
             self.feeds_differ(|| places(0), [own.feed, other.feed]);
         }
     }
+}
+
+/// Whether two numbers are the same in the decimals of both; an input's are those of the other.
+pub(super) fn same_number(a: f64, b: f64, digits: [Option<u8>; 2]) -> bool {
+    if a == b {
+        return true;
+    }
+    let coarser = match digits {
+        [Some(own), Some(other)] if own == other => return false,
+        [Some(own), Some(other)] => own.min(other),
+        [Some(digits), None] | [None, Some(digits)] => digits,
+        [None, None] => return false,
+    };
+    // Half a unit of the coarser, and what a float of these numbers is off.
+    let half = 0.5 / power_of_ten(coarser) as f64;
+    (a - b).abs() <= half + 4.0 * f64::EPSILON * a.abs().max(b.abs())
 }
 
 /// `1 step`, `2 steps`.

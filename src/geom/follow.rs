@@ -428,7 +428,7 @@ struct Runner<'a> {
 impl<'a> Runner<'a> {
     fn new(pieces: &'a [Bezier]) -> Runner<'a> {
         let mut rest = pieces.iter();
-        Runner { stand: rest.next().map(|piece| Stand::new(*piece)), rest }
+        Runner { stand: rest.next().map(Stand::new), rest }
     }
 
     /// Takes the part up to `t`; at 1 the next piece begins.
@@ -437,7 +437,7 @@ impl<'a> Runner<'a> {
         let part = stand.part(t);
         stand.t = t;
         if t == 1.0 {
-            self.stand = self.rest.next().map(|piece| Stand::new(*piece));
+            self.stand = self.rest.next().map(Stand::new);
         }
         Some(part)
     }

@@ -20,9 +20,9 @@ pub(super) fn is_straight(piece: &Bezier) -> bool {
 
 impl Stand {
     /// At the start of a piece.
-    pub(super) fn new(piece: Bezier) -> Stand {
+    pub(super) fn new(piece: &Bezier) -> Stand {
         let mut lengths = [0.0; PLACES + 1];
-        if is_straight(&piece) {
+        if is_straight(piece) {
             let whole = distance(&piece.start(), &piece.end());
             for (k, length) in lengths.iter_mut().enumerate() {
                 *length = whole * k as f64 / PLACES as f64;
@@ -35,7 +35,7 @@ impl Stand {
                 last = next;
             }
         }
-        Stand { piece, t: 0.0, lengths }
+        Stand { piece: *piece, t: 0.0, lengths }
     }
 
     /// The length up to t.

@@ -89,7 +89,7 @@ impl<I: Iterator<Item = Bezier>> Ahead<I> {
         self.held[index] = (at, first, [from, middle]);
         self.held.insert(index + 1, (at, piece.segment(t, 1.0), [middle, to]));
         if index == 0 && self.stand.is_some() {
-            let mut stand = Stand::new(first);
+            let mut stand = Stand::new(&first);
             stand.t = (stands / t).min(1.0);
             self.stand = Some(stand);
         }
@@ -99,7 +99,7 @@ impl<I: Iterator<Item = Bezier>> Ahead<I> {
     fn ready(&mut self) {
         self.hold(1);
         if self.stand.is_none() {
-            self.stand = self.held.front().map(|(_, piece, _)| Stand::new(*piece));
+            self.stand = self.held.front().map(|(_, piece, _)| Stand::new(piece));
         }
     }
 
