@@ -142,7 +142,9 @@ pub fn recompile(
     machine: &Machine,
     options: &Options,
 ) -> Result<Output, Failure> {
-    compile_intent(translate::parse(sources, from)?, machine, options)
+    let mut intent = translate::parse(sources, from)?;
+    intent.warnings.extend(translate::turns_otherwise(&intent, from, machine));
+    compile_intent(intent, machine, options)
 }
 
 fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {

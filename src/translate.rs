@@ -276,6 +276,23 @@ impl Translation<'_> {
     }
 }
 
+/// The warning where the other machine turns the tool between two directions in another way: the ends of blocks are the
+/// same then, and what is between is not.
+pub fn turns_otherwise(intent: &Intent, from: &Machine, to: &Machine) -> Diagnostics {
+    let mut warnings = Diagnostics::new();
+    if intent.program.axes.direction().is_some() && from.orientation.turn != to.orientation.turn {
+        let message = format!(
+            "machines `{}` and `{}` turn the tool between two directions in different ways: only the directions at the ends of straight blocks are the same",
+            from.name, to.name
+        );
+        warnings.push(
+            Diagnostic::warning("turn-differs", message)
+                .hint("`diff` of both programs says how far they are apart; [orientation] turn says how a machine turns"),
+        );
+    }
+    warnings
+}
+
 /// Reads the input as a program for `machine`.
 ///
 /// # Errors

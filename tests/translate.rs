@@ -130,3 +130,16 @@ fn a_flute_goes_where_f_counts_the_path_alone() {
     // Four flutes, and four approaches, which are lines like others here.
     assert_eq!(again.report.expect("a report").path_blocks, 8);
 }
+
+#[test]
+fn a_machine_that_turns_the_tool_otherwise_is_warned_of() {
+    let sinumerik = built_in("sinumerik");
+    let even = machine("extends = \"heidenhain\"\nname = \"even\"\n[orientation]\nturn = \"tilt\"\n");
+    let path = folder("fixtures/apt/nx-five-axes/sinumerik.mpf");
+    let text = std::fs::read_to_string(path).expect("the program");
+    let warned = |to: &Machine| {
+        let output = program(&text, &sinumerik, to, None).unwrap_or_else(|e| panic!("{e:?}"));
+        output.warnings.0.iter().any(|warning| warning.id == "turn-differs")
+    };
+    assert!(warned(&even) && !warned(&built_in("heidenhain")));
+}
