@@ -142,7 +142,8 @@ fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
 
 /// Where inside piece `b` of the one path piece `a` of the other ends, where its next joint stands on that piece or one of
 /// those behind it too.
-fn meets(p: &Held, a: usize, c: &Held, b: usize, rule: &Rule) -> Option<f64> {
+/// `run` is how far its first piece has been run: no path goes back.
+fn meets(p: &Held, a: usize, (c, run): (&Held, f64), b: usize, rule: &Rule) -> Option<f64> {
     let tolerance = rule.tolerance;
     let on = |q: &Position, piece: &Bezier, low: f64| {
         // Most pieces are far away, which their control points show.
@@ -157,7 +158,8 @@ fn meets(p: &Held, a: usize, c: &Held, b: usize, rule: &Rule) -> Option<f64> {
         (distance(&piece.eval(u), q) <= tolerance).then_some(u)
     };
     let ((_, own, _), (_, other, _)) = (p.get(a)?, c.get(b)?);
-    let u = on(&own.end(), other, 0.0).filter(|u| 0.0 < *u && *u < 1.0)?;
+    let low = if b == 0 { run } else { 0.0 };
+    let u = on(&own.end(), other, low).filter(|u| low < *u && *u < 1.0)?;
     let (_, next, _) = p.get(a + 1)?;
     let follows = on(&next.end(), other, u).is_some()
         || c.iter().skip(b + 1).take(BEHIND).any(|(_, piece, _)| on(&next.end(), piece, 0.0).is_some());
@@ -245,6 +247,8 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
         self.p.hold(LOOK + 1);
         self.c.hold(LOOK + 1);
         let (p, c) = (&self.p.held, &self.c.held);
+        let run = |stand: &Option<Stand>| stand.as_ref().map_or(0.0, |stand| stand.t);
+        let (run_p, run_c) = (run(&self.p.stand), run(&self.c.stand));
         let near = |a: usize, b: usize| match (p.get(a), c.get(b)) {
             (Some((_, p, _)), Some((_, c, _))) => distance(&p.end(), &c.end()) <= self.rule.tolerance,
             (None, None) => true,
@@ -257,11 +261,11 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
                 return Some((a + 1, b + 1));
             }
             // A joint of the one inside a piece of the other, and the next one too, or inside one of the pieces behind it.
-            if let Some(u) = meets(p, a, c, b, &self.rule) {
+            if let Some(u) = meets(p, a, (c, run_c), b, &self.rule) {
                 self.c.cut(b, u);
                 return Some((a + 1, b + 1));
             }
-            if let Some(t) = meets(c, b, p, a, &self.rule) {
+            if let Some(t) = meets(c, b, (p, run_p), a, &self.rule) {
                 self.p.cut(a, t);
                 return Some((a + 1, b + 1));
             }

@@ -139,3 +139,15 @@ fn a_part_run_twice_is_a_difference() {
     assert!(!parted(&once[..2], &once, 0.01).is_empty());
     assert!(!parted(&once, &once[..2], 0.01).is_empty());
 }
+
+#[test]
+fn a_way_back_along_the_same_line_is_a_difference() {
+    let straight = lines(&[(0., 0.), (20., 0.), (30., 0.)]);
+    let back = lines(&[(0., 0.), (10., 0.), (6., 0.), (20., 0.), (30., 0.)]);
+    for (p, c) in [(&straight, &back), (&back, &straight)] {
+        // Whoever waits half way is 2 mm off, and no map does better.
+        let farthest = parted(p, c, 1.0).iter().map(|(_, d)| *d).fold(0.0, f64::max);
+        assert!(2.0 <= farthest, "{farthest}");
+        assert!(!parted(p, c, 1.9).is_empty());
+    }
+}
