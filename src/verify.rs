@@ -26,7 +26,7 @@ mod logarithmic;
 mod report;
 mod splined;
 
-pub use arcs::to_arc;
+pub use arcs::{spelled_auxiliary, to_arc};
 
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -65,7 +65,7 @@ pub fn verify(
 ) -> Result<Report, Diagnostics> {
     let decimals = &reading.decimals;
     let mut report = Report {
-        deviation: Bound { rad: intent.tilt_error, ..Bound::ZERO },
+        deviation: Bound { rad: intent.tilt_error.rad, ..Bound::ZERO },
         status: Status::Proved,
         from_ideal: None,
         map: None,
@@ -170,6 +170,9 @@ pub fn verify(
                 let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
                 // The path before ends that far from where this one starts; a turn takes it along.
                 found.deviation.mm += gap;
+                if let Curve::Arc(_) = curve {
+                    found.deviation.mm += intent.tilt_error.mm;
+                }
                 if cursor.gap != 0.0 {
                     cursor.gap += gap;
                 }

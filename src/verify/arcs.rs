@@ -214,21 +214,26 @@ impl Cursor<'_> {
 
     /// Meets a switch, or a dwell in seconds.
     pub(super) fn auxiliary(&mut self, asked: &Auxiliary<f64>, digits: Digits) -> Result<(), Diagnostics> {
-        let what = match asked {
-            Auxiliary::CoolantStop => "the end of the coolant".to_owned(),
-            Auxiliary::SpindleStop => "the spindle's stop".to_owned(),
-            Auxiliary::Stop => "a stop of the program".to_owned(),
-            Auxiliary::OptionalStop => "an optional stop".to_owned(),
-            Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
-            Auxiliary::TipControl => "that the tip is led".to_owned(),
-            Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
-            Auxiliary::Plane([first, second, third]) => {
-                format!("a plane tilted by {first}, {second} and {third} degrees")
-            }
-            Auxiliary::PlaneEnd => "the end of the tilted plane".to_owned(),
-        };
+        let what = spelled_auxiliary(asked);
         let rounded = asked
             .try_map(|seconds| Decimal::round(seconds, digits.feed), |x| Decimal::round(x, digits.rotary));
         self.meet(&what, |step| matches!(step, Step::Auxiliary(read) if Some(*read) == rounded))
+    }
+}
+
+/// A switch or a dwell in words.
+pub fn spelled_auxiliary(auxiliary: &Auxiliary<f64>) -> String {
+    match auxiliary {
+        Auxiliary::CoolantStop => "the end of the coolant".to_owned(),
+        Auxiliary::SpindleStop => "the spindle's stop".to_owned(),
+        Auxiliary::Stop => "a stop of the program".to_owned(),
+        Auxiliary::OptionalStop => "an optional stop".to_owned(),
+        Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
+        Auxiliary::TipControl => "that the tip is led".to_owned(),
+        Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
+        Auxiliary::Plane([first, second, third]) => {
+            format!("a plane tilted by {first}, {second} and {third} degrees")
+        }
+        Auxiliary::PlaneEnd => "the end of the tilted plane".to_owned(),
     }
 }

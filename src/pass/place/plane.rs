@@ -16,10 +16,12 @@
 use crate::decimal::{Decimal, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
+use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Bound;
 use crate::geom::direction;
 use crate::geom::nurbs::Nurbs;
 use crate::geom::rotation::Rotation;
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Polyline, Step};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, Position};
@@ -61,8 +63,16 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     }
     let upright = machine.with_axes(&axes)?;
     let retracts = upright.home(Z).is_some() && !machine.frame.home.is_empty();
-    let mut walk =
-        Walk { first, machine, retracts, all: Vec::new(), plane: None, at: None, called: false, error: 0.0 };
+    let mut walk = Walk {
+        first,
+        machine,
+        retracts,
+        all: Vec::new(),
+        plane: None,
+        at: None,
+        called: false,
+        error: Bound::ZERO,
+    };
     let steps = &intent.program.steps;
     for located in steps {
         if walk.step(located)?.is_none() {
@@ -77,7 +87,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     intent.program.steps = all;
     intent.program.axes = axes;
     intent.tilt_error = error;
-    let (degrees, allowed) = (error * DEGREES, machine.orientation.tolerance);
+    let (degrees, allowed) = (error.rad * DEGREES, machine.orientation.tolerance);
     if degrees <= allowed {
         return Ok(());
     }
@@ -110,10 +120,11 @@ fn turns_at_rapid(steps: &[Located<f64, Curve>], first: usize) -> bool {
                 Curve::Lines(line) => keeps(&line.start) && line.points().all(|p| keeps(&p)),
                 Curve::Arc(arc) => keeps(&arc.start()) && keeps(&arc.end()),
                 Curve::Nurbs(nurbs) => nurbs.points().iter().all(keeps),
-                // CL data has none of these.
-                Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
-                    false
+                Curve::Polynomial(pieces) => {
+                    pieces.iter().all(|piece| piece.control_points().iter().all(keeps))
                 }
+                // No input has these in five axes.
+                Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => false,
             }
         }
         Step::Comment(_)
@@ -150,7 +161,7 @@ struct Walk<'m> {
     /// Where the input takes the tip to be, in the work's own coordinates.
     at: Option<[f64; 3]>,
     called: bool,
-    error: f64,
+    error: Bound,
 }
 
 impl Walk<'_> {
@@ -180,6 +191,9 @@ impl Walk<'_> {
             Step::Cut(cut) => {
                 let Some(plane) = &mut self.plane else { return Ok(None) };
                 let Some(curve) = plane.counted(&cut.curve) else { return Ok(None) };
+                if let Curve::Arc(arc) = &cut.curve {
+                    self.error.mm = self.error.mm.max(plane.arc(arc).1);
+                }
                 let (end, top) = extent(&curve);
                 plane.top = plane.top.max(top);
                 self.at = Some(plane.rotation.out(end));
@@ -205,7 +219,8 @@ impl Walk<'_> {
             self.enter(asked, span)?;
         }
         let Some(plane) = &mut self.plane else { return Ok(()) };
-        self.error = self.error.max(direction::angle(&plane.rotation.axis(), &asked));
+        let turned = direction::angle(&plane.rotation.axis(), &asked);
+        self.error.rad = self.error.rad.max(turned);
         let to = plane.rotation.into_frame(place);
         plane.top = plane.top.max(to[Z]);
         let from = self.at.filter(|_| !turns).map(|at| plane.rotation.into_frame(at));
@@ -289,7 +304,12 @@ fn extent(curve: &Curve) -> ([f64; 3], f64) {
             let top = points.iter().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
             (points.last().map_or([0.0; 3], place), top)
         }
-        Curve::Polynomial(_) | Curve::Logarithmic(_) | Curve::Formula(_) => ([0.0; 3], f64::NEG_INFINITY),
+        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
+            let points = || pieces.iter().flat_map(Bezier::control_points);
+            let top = points().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
+            (points().last().map_or([0.0; 3], place), top)
+        }
+        Curve::Logarithmic(_) => ([0.0; 3], f64::NEG_INFINITY),
     }
 }
 
@@ -308,20 +328,29 @@ impl Tilted {
                 counted.lines.clone_from(&line.lines);
                 Curve::Lines(counted)
             }
-            Curve::Arc(arc) => Curve::Arc(self.arc(arc)),
+            Curve::Arc(arc) => Curve::Arc(self.arc(arc).0),
             Curve::Nurbs(nurbs) => Curve::Nurbs(Nurbs::mapped(nurbs, place)),
-            Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
-                return None;
+            Curve::Polynomial(pieces) => {
+                let counted = |piece: &Bezier| {
+                    let mut piece = *piece;
+                    piece.points.iter_mut().for_each(|point| *point = place(point));
+                    piece
+                };
+                Curve::Polynomial(pieces.iter().map(counted).collect())
             }
+            Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
         })
     }
-}
 
-impl Tilted {
-    /// An arc as the plane counts it.
-    fn arc(&self, arc: &Arc) -> Arc {
+    /// An arc as the plane counts it, and how far that is from it at most, mm: about an axis that is θ off, its places are
+    /// up to Rθ out of the plane, and as far from the straight rise between its ends.
+    fn arc(&self, arc: &Arc) -> (Arc, f64) {
         let back = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation.0[j][i]));
-        let upright = arc.mapped_along(|p| [p[0], p[1], p[2], 0.0, 0.0, 0.0]);
-        upright.turned(&back, SQUARE / arc.radius())
+        let plain = arc.mapped_along(|p| [p[0], p[1], p[2], 0.0, 0.0, 0.0]);
+        let counted = plain.turned(&back, SQUARE / arc.radius());
+        let [.., asked] = arc.frame().axes();
+        let [.., axis] = counted.frame().axes();
+        let off = direction::angle(&self.rotation.into_frame(asked), &axis);
+        (counted, 2.0 * arc.radius() * off.min(std::f64::consts::PI - off))
     }
 }
