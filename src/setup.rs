@@ -262,8 +262,9 @@ pub fn own_remarks(remarks: &[String]) -> &[String] {
     };
     let mut text = String::new();
     for (i, remark) in remarks[last..].iter().enumerate() {
-        text = format!("{text} {remark}").trim().to_owned();
-        let said = text.strip_prefix(LAST_REMARK).unwrap_or_default().trim_start();
+        text.push(' ');
+        text.push_str(remark);
+        let said = text.trim_start().strip_prefix(LAST_REMARK).unwrap_or_default().trim_start();
         if said.split(", ").all(|part| NOT_COVERED.iter().any(|known| known.eq_ignore_ascii_case(part))) {
             return &remarks[last + i + 1..];
         }
