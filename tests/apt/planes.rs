@@ -320,6 +320,19 @@ fn where_the_tool_turns_at_feed_its_tip_is_led() {
 }
 
 #[test]
+fn holes_are_drilled_square_to_their_plane() {
+    let input = "PARTNO DRILL\nMULTAX/ON\nLOADTL/5\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/0,-60,20,0,-0.6,0.8\n\
+        CYCLE/DRILL,DEPTH,10,MMPM,120,CLEAR,3\nGOTO/0,-30,0,0,-0.6,0.8\nGOTO/10,-30,0\nCYCLE/OFF\n\
+        RAPID\nGOTO/20,-60,40\nFINI\n";
+    let text = program("iso", input, &default("sinumerik")).expect("a program").text;
+    let blocks = unnumbered(&text);
+    // In the plane Y is 0.8 y + 0.6 z and Z is 0.8 z - 0.6 y: the holes lie at Y -24, Z 18. Behind the remark every axis is
+    // named, and nothing is written where nothing moves.
+    let holes = "AS MOVES\nN G0 X0 Y-24 Z52\nN Z21\nN G1 Z8 F120\nN G0 Z21\nN X10\nN G1 Z8\nN G0 Z21\n";
+    assert!(blocks.contains(holes), "{text}");
+}
+
+#[test]
 fn a_plane_needs_a_home_and_a_tool() {
     let refused = |input: &str, machine: &Machine| {
         program("nx", input, machine).map_or_else(|errors| errors.0[0].id, |output| panic!("{}", output.text))

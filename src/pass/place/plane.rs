@@ -71,6 +71,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
         plane: None,
         at: None,
         called: false,
+        told: false,
         error: Bound::ZERO,
     };
     let steps = &intent.program.steps;
@@ -161,6 +162,8 @@ struct Walk<'m> {
     /// Where the input takes the tip to be, in the work's own coordinates.
     at: Option<[f64; 3]>,
     called: bool,
+    /// Whether no section began since the last move: its first rapid names every axis.
+    told: bool,
     error: Bound,
 }
 
@@ -197,16 +200,18 @@ impl Walk<'_> {
                 let (end, top) = extent(&curve);
                 plane.top = plane.top.max(top);
                 self.at = Some(plane.rotation.out(end));
+                self.told = true;
                 self.push(Step::Cut(Cut { feed: cut.feed, role: cut.role, curve }), span);
             }
             // The plane is left by way of it.
             Step::Home(_) if self.plane.is_some() => self.leave(span),
-            Step::Comment(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => self.push(located.step.clone(), span),
+            Step::Comment(_) => {
+                self.told = false;
+                self.push(located.step.clone(), span);
+            }
+            Step::Spindle(_) | Step::Coolant | Step::Home(_) | Step::Shift(_) | Step::Auxiliary(_) => {
+                self.push(located.step.clone(), span)
+            }
         }
         Ok(Some(()))
     }
@@ -223,19 +228,20 @@ impl Walk<'_> {
         self.error.rad = self.error.rad.max(turned);
         let to = plane.rotation.into_frame(place);
         plane.top = plane.top.max(to[Z]);
-        let from = self.at.filter(|_| !turns).map(|at| plane.rotation.into_frame(at));
+        let from = self.at.filter(|_| !turns && self.told).map(|at| plane.rotation.into_frame(at));
         self.at = Some(place);
+        self.told = true;
         if turns {
             self.push(Step::Rapid((0..PLACE).map(|i| (i, to[i])).collect()), span);
             return Ok(());
         }
         let digits = self.machine.digits.linear;
         let moves = |i: &usize| from.is_none_or(|from| !same(from[*i], to[*i], digits));
-        let mut targets: Vec<(usize, f64)> = (0..PLACE).filter(moves).map(|i| (i, to[i])).collect();
-        if targets.is_empty() {
-            targets.push((0, to[0]));
+        let targets: Vec<(usize, f64)> = (0..PLACE).filter(moves).map(|i| (i, to[i])).collect();
+        // Where nothing moves nothing is written.
+        if !targets.is_empty() {
+            self.push(Step::Rapid(targets), span);
         }
-        self.push(Step::Rapid(targets), span);
         Ok(())
     }
 
