@@ -145,18 +145,34 @@ fn position_at_home(intent: &mut Intent) {
     let Some(first) = steps.iter().position(|located| matches!(located.step, Step::Comment(_))) else {
         return;
     };
-    let home = steps[..first].iter().find_map(|located| match located.step {
-        Step::Home(axis) => Some(axis),
+    // The axis that is at home where the section starts: nothing brought it back to the work, and nothing was cut.
+    let home = steps[..first].iter().fold(None, |home, located| match &located.step {
+        Step::Home(axis) => Some(*axis),
+        Step::Rapid(targets) => home.filter(|home| targets.iter().all(|(axis, _)| axis != home)),
+        Step::Cut(_) | Step::Auxiliary(Auxiliary::Plane(_)) => None,
         Step::Comment(_)
         | Step::Tool(_)
         | Step::Spindle(_)
         | Step::Coolant
         | Step::Shift(_)
-        | Step::Auxiliary(_)
-        | Step::Rapid(_)
-        | Step::Cut(_) => None,
+        | Step::Auxiliary(_) => home,
     });
     let Some(home) = home else { return };
+    // Where the section itself goes over the work first, there is nothing to do before it.
+    let next = steps[first..].iter().find_map(|located| match &located.step {
+        Step::Rapid(targets) => Some(targets.iter().any(|(axis, _)| *axis == home)),
+        Step::Cut(_) => Some(false),
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Auxiliary(_) => None,
+    });
+    if next != Some(true) {
+        return;
+    }
     let moves = steps[first..].iter().take_while(|located| located.step.cut().is_none());
     let over: Vec<Located<f64, Curve>> = moves
         .filter(|located| match &located.step {

@@ -11,6 +11,9 @@ use crate::units::{Axes, Position};
 /// How many coordinates a place has.
 const PLACE: usize = 3;
 
+/// The axis that comes down to the work.
+const Z: usize = 2;
+
 /// Counts the places of a program with tilted planes in the coordinates of the work. A rapid names some of the plane's axes; the
 /// place that it leads to is known once all were named, and the tool goes there at once. From its home it goes over the work
 /// first, as ever.
@@ -25,11 +28,12 @@ pub(super) fn count_back(program: &mut Program<f64, Curve>, order: Order) -> Res
         let message = "tilted planes are translated where X, Y and Z are all that moves";
         return Err(Diagnostic::error("plane-translated", message).at(span, "").into());
     }
-    let mut back = Back { rotation: Rotation::NONE, at: [None; PLACE] };
+    let mut back = Back { rotation: Rotation::NONE, at: [None; PLACE], unmet: None };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in std::mem::take(&mut program.steps) {
         steps.extend(back.step(step, order, span)?.map(|step| Located { step, span }));
     }
+    back.met()?;
     program.steps = steps;
     program.axes = own;
     Ok(())
@@ -43,6 +47,8 @@ struct Back {
     rotation: Rotation,
     /// Where the tip is, as the plane counts it.
     at: [Option<f64>; PLACE],
+    /// A rapid that leads to no place that is known yet.
+    unmet: Option<Span>,
 }
 
 impl Back {
@@ -53,6 +59,13 @@ impl Back {
         [x, y, z, i, j, k]
     }
 
+    /// Refuses a rapid that would be lost: it leads to no place of the work.
+    fn met(&self) -> Result<(), Diagnostics> {
+        let Some(span) = self.unmet else { return Ok(()) };
+        let message = "this rapid leads to no place of the work: nothing says where its other axes are";
+        Err(Diagnostic::error("plane-translated", message).at(span, "").into())
+    }
+
     fn step(
         &mut self,
         step: Step<f64, Curve>,
@@ -61,22 +74,34 @@ impl Back {
     ) -> Result<Option<Step<f64, Curve>>, Diagnostics> {
         Ok(match step {
             Step::Auxiliary(Auxiliary::Plane(angles)) => {
-                *self = Back { rotation: Rotation::of(order, angles), at: [None; PLACE] };
+                self.met()?;
+                *self = Back { rotation: Rotation::of(order, angles), at: [None; PLACE], unmet: None };
                 None
             }
             Step::Auxiliary(Auxiliary::PlaneEnd) => {
-                *self = Back { rotation: Rotation::NONE, at: [None; PLACE] };
+                self.met()?;
+                *self = Back { rotation: Rotation::NONE, at: [None; PLACE], unmet: None };
                 None
             }
             Step::Home(axis) => {
+                self.met()?;
                 self.at[axis] = None;
                 Some(Step::Home(axis))
             }
             Step::Rapid(targets) => {
                 for (axis, to) in targets {
+                    if axis == Z && (self.at[0].is_none() || self.at[1].is_none()) {
+                        // Over the work comes first wherever the program is written next.
+                        self.unmet = Some(span);
+                        self.met()?;
+                    }
                     self.at[axis] = Some(to);
                 }
-                let [Some(x), Some(y), Some(z)] = self.at else { return Ok(None) };
+                let [Some(x), Some(y), Some(z)] = self.at else {
+                    self.unmet = self.unmet.or(Some(span));
+                    return Ok(None);
+                };
+                self.unmet = None;
                 let place = self.place(&[x, y, z, 0.0, 0.0, 0.0]);
                 Some(Step::Rapid(place.into_iter().enumerate().collect()))
             }
