@@ -367,7 +367,7 @@ fn lines_of_a_plane_say_its_angles_and_the_length() {
 fn nothing_moves_before_a_remark_that_was_not_asked() {
     let input = "UNITS/MM\nLOADTL/1\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/200,MMPM\nGOTO/0,0,-5\n\
         GOTO/20,0,-5\nPPRINT/SECOND\nRAPID\nGOTO/20,0,50\nRAPID\nGOTO/80,30,50\nRAPID\nGOTO/80,30,2\nGOTO/80,30,-5\nFINI\n";
-    let tilted = input.replace("GOTO/0,0,50\n", "GOTO/0,0,50,0,-0.6,0.8\n").replacen("PPRINT", "PPRINT", 1);
+    let tilted = input.replace("GOTO/0,0,50\n", "GOTO/0,0,50,0,-0.6,0.8\n");
     for (dialect, cut) in [("sinumerik", "X20"), ("heidenhain", " L X+20"), ("mazak", "X20.")] {
         for input in [input, tilted.as_str()] {
             let text = program("iso", input, &default(dialect)).expect("a program").text;
