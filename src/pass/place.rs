@@ -9,12 +9,12 @@ mod plane;
 mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
-use crate::ir::{
-    Auxiliary, Curve, Cut, Described, Intent, Located, Logarithmic, Polyline, Role, Shift, Step,
-};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
 use crate::machine::Machine;
 use crate::units::{Axes, Axis, DEGREES, Kind, Position};
+
+/// The axis that retracts before a tool turns: the third.
+const Z: usize = 2;
 
 /// The intent as this machine counts it: its axes' names, its homes, its work offsets.
 ///
@@ -53,7 +53,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
 /// Leaves out retractions to a home that the machine file does not state.
 fn homes(intent: &mut Intent, machine: &Machine) {
     intent.program.steps.retain(|located| match located.step {
-        Step::Home(axis) => machine.home(axis).is_some() && !machine.frame.home.is_empty(),
+        Step::Home(axis) => machine.retracts(axis),
         Step::Comment(_)
         | Step::Tool(_)
         | Step::Spindle(_)
@@ -101,7 +101,7 @@ fn over_the_work(intent: &mut Intent) {
                         }
                     }
                     (Some(axis), curve) => {
-                        if let Some(start) = start(curve) {
+                        if let Some((start, _)) = curve.ends() {
                             over(axis, &start);
                             let mut line = Polyline::new(start, count);
                             line.push(&start);
@@ -122,19 +122,6 @@ fn over_the_work(intent: &mut Intent) {
         all.push(located);
     }
     *steps = all;
-}
-
-/// Where a curve starts; none of one that has no places of its own.
-fn start(curve: &Curve) -> Option<Position> {
-    match curve {
-        Curve::Lines(line) | Curve::Through(_, line) => Some(line.start),
-        Curve::Arc(arc) => Some(arc.start()),
-        Curve::Nurbs(nurbs) => nurbs.points().first().copied(),
-        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
-            pieces.first().map(Bezier::start)
-        }
-        Curve::Logarithmic(_) => None,
-    }
 }
 
 /// From its home the tool goes over the work before it goes down: the rapids of the linear axes that the first section

@@ -2,9 +2,8 @@
 //! that the program is written for next tilts planes of its own or leads the tip.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
 use crate::geom::rotation::{Order, Rotation};
-use crate::ir::{Auxiliary, Curve, Cut, Located, Polyline, Program, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Located, Program, Step};
 use crate::source::Span;
 use crate::units::{Axes, Position};
 
@@ -110,7 +109,7 @@ impl Back {
                     let message = "this path starts at a place that nothing says since the plane was tilted";
                     return Err(Diagnostic::error("start-unknown", message).at(span, "").into());
                 }
-                let Some((curve, end)) = self.curve(&cut.curve) else {
+                let (Some(curve), Some((_, end))) = (self.curve(&cut.curve), cut.curve.ends()) else {
                     let message = "a control's own spline in a tilted plane is not translated";
                     return Err(Diagnostic::error("plane-translated", message).at(span, "").into());
                 };
@@ -126,36 +125,20 @@ impl Back {
         })
     }
 
-    /// A curve of the plane in the coordinates of the work, and where it ends in the plane; none of one that only the control
-    /// knows.
-    fn curve(&self, curve: &Curve) -> Option<(Curve, Position)> {
+    /// A curve of the plane in the coordinates of the work; none of one that only the control knows.
+    fn curve(&self, curve: &Curve) -> Option<Curve> {
         let place = |p: &Position| self.place(p);
         Some(match curve {
-            Curve::Lines(line) => {
-                let mut own = Polyline::new(place(&line.start), 2 * PLACE);
-                let mut end = line.start;
-                for point in line.points() {
-                    own.push(&place(&point));
-                    end = point;
-                }
-                own.rates.clone_from(&line.rates);
-                own.lines.clone_from(&line.lines);
-                (Curve::Lines(own), end)
-            }
+            Curve::Lines(line) => Curve::Lines(line.mapped(2 * PLACE, place)),
             Curve::Arc(arc) => {
                 let [i, j, k] = self.rotation.axis();
-                let own = arc.turned(&self.rotation.0, 0.0);
-                (Curve::Arc(own.mapped_along(|p| [p[0], p[1], p[2], i, j, k])), arc.end())
+                let turned = arc.turned(&self.rotation, 0.0);
+                Curve::Arc(turned.mapped_along(|p| [p[0], p[1], p[2], i, j, k]))
             }
             Curve::Polynomial(pieces) => {
-                let turned = |piece: &Bezier| {
-                    let mut piece = *piece;
-                    piece.points.iter_mut().for_each(|point| *point = place(point));
-                    piece
-                };
-                (Curve::Polynomial(pieces.iter().map(turned).collect()), pieces.last()?.end())
+                Curve::Polynomial(pieces.iter().map(|piece| piece.mapped(place)).collect())
             }
-            Curve::Nurbs(nurbs) => (Curve::Nurbs(nurbs.mapped(place)), *nurbs.points().last()?),
+            Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
             Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
         })
     }

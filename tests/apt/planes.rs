@@ -1,19 +1,13 @@
 //! 3+2 axes: the text of each dialect is counted back by the words of its control, with rotations of its own.
 
-use super::{cases, input, program};
+use super::{cases, input, machine, program, verified};
 use splinepost::Output;
-use splinepost::diagnostic::Diagnostics;
 use splinepost::geom::elementary::{cos, sin};
 use splinepost::machine::Machine;
-use splinepost::source::{Source, SourceId, Sources};
-use splinepost::{Options, front, verify_program};
+use splinepost::source::SourceId;
 use std::fs;
 
 const DIALECTS: [&str; 3] = ["sinumerik", "heidenhain", "mazak"];
-
-fn machine(text: &str) -> Machine {
-    crate::support::machine(text)
-}
 
 fn default(dialect: &str) -> Machine {
     machine(&format!("extends = \"{dialect}\""))
@@ -27,13 +21,6 @@ fn case() -> String {
 
 fn compiled(text: &str, machine: &Machine) -> Output {
     program("nx", text, machine).unwrap_or_else(|errors| panic!("{}: {errors:?}", machine.name))
-}
-
-fn verified(input: &str, text: &str, machine: &Machine) -> Result<(), Diagnostics> {
-    let mut sources = Sources::new(Source::new("input.cl", input));
-    let id = sources.push(Source::new("program", text));
-    let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
-    verify_program(&sources, language, id, machine, &Options::default()).map(|_| ())
 }
 
 type Matrix = [[f64; 3]; 3];
