@@ -6,10 +6,11 @@ use super::reader::{Reader, Said};
 use super::records::Record;
 use super::technology::Feed;
 use crate::diagnostic::Diagnostic;
+use crate::geom::direction;
 use crate::source::Span;
 
-/// How far a tool axis may be from Z and still be Z: as far as six decimals say nothing.
-const AXIS_SLACK: f64 = 1.0e-6;
+/// How far two tool axes may be apart and still be taken for one on an arc, radians: six decimals say no more.
+const AXIS_SLACK: f64 = 2.0e-6;
 
 /// What waits for the next point.
 #[derive(Clone, Debug)]
@@ -42,7 +43,10 @@ impl Reader<'_> {
             if !self.set_axis([numbers[3], numbers[4], numbers[5]], span()) {
                 return;
             }
-        } else if self.axis_stale && numbers.len() == 3 && self.program.axis() != UPRIGHT {
+        } else if self.axis_stale
+            && numbers.len() == 3
+            && AXIS_SLACK < direction::angle(&self.program.axis(), &UPRIGHT)
+        {
             return self.stale_axis(span());
         } else if numbers.len() != 3 {
             let message =
@@ -106,12 +110,13 @@ impl Reader<'_> {
             self.error("tool-axis", "the tool axis is no direction", span);
             return false;
         }
-        let [x, y, z] = axis.map(|x| x / length);
-        let upright = x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z;
-        let axis = if upright { UPRIGHT } else { [x, y, z] };
+        let axis = axis.map(|x| x / length);
         self.axis_stale = false;
         if axis != self.program.axis() {
             if let Some(Pending::Circle(_)) = &self.pending {
+                if direction::angle(&axis, &self.program.axis()) <= AXIS_SLACK {
+                    return true;
+                }
                 self.turning_arc(span);
                 return false;
             }
