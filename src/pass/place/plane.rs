@@ -131,6 +131,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diag
         at: None,
         called: false,
         told: false,
+        tilted: false,
         error: Bound::ZERO,
     };
     let steps = &intent.program.steps;
@@ -142,6 +143,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diag
     }
     if let Some(last) = steps.last() {
         walk.leave(last.span);
+        walk.straighten(last.span);
     }
     let (all, error) = (walk.all, walk.error);
     intent.program.steps = all;
@@ -229,6 +231,8 @@ struct Walk<'m> {
     called: bool,
     /// Whether no section began since the last move: its first rapid names every axis.
     told: bool,
+    /// Whether the last plane was not upright.
+    tilted: bool,
     error: Bound,
 }
 
@@ -335,6 +339,7 @@ impl Walk<'_> {
         let digits = self.machine.digits.rotary;
         let angles = Rotation::level(asked).angles(order).map(|angle| rounded(angle, digits));
         self.push(Step::Auxiliary(Auxiliary::Plane(angles)), span);
+        self.tilted = angles != [0.0; PLACE];
         let rotation = Rotation::of(order, angles);
         self.plane = Some(Tilted { asked, rotation, top: f64::NEG_INFINITY });
         Ok(())
@@ -352,6 +357,14 @@ impl Walk<'_> {
         }
         self.push(Step::Home(Z), span);
         self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+    }
+
+    /// Turns the tool upright at the end, with Z at home: the next program may know nothing of planes.
+    fn straighten(&mut self, span: Span) {
+        if self.tilted {
+            self.push(Step::Auxiliary(Auxiliary::Plane([0.0; PLACE])), span);
+            self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+        }
     }
 }
 
