@@ -33,6 +33,13 @@ pub(super) enum Coolant {
     Called,
 }
 
+/// What is new since the last move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum New {
+    Tool,
+    Frame,
+}
+
 /// What runs, and what is to be said of it.
 #[derive(Debug, Default)]
 pub(super) struct Running {
@@ -41,12 +48,9 @@ pub(super) struct Running {
     coolant: Coolant,
     /// Whether it was told that the spindle stands.
     told: bool,
-    /// Whether the tool that was called last has moved.
-    moved: bool,
+    new: Option<New>,
     /// Whether anything has moved.
     begun: bool,
-    /// Whether the frame has changed since the last rapid.
-    reframed: bool,
     /// What there is to say.
     pub(super) diagnostics: Diagnostics,
 }
@@ -66,7 +70,7 @@ impl Running {
     /// A tool is called.
     pub(super) fn tool(&mut self, number: u32) {
         self.tool = Some(number);
-        self.moved = false;
+        self.new = Some(New::Tool);
         self.spindle(Spindle::Called);
         if self.coolant != Coolant::Off {
             self.coolant = Coolant::Called;
@@ -89,13 +93,13 @@ impl Running {
 
     /// Positions count in another frame from here on.
     pub(super) fn reframed(&mut self) {
-        (self.reframed, self.moved) = (true, false);
+        self.new = Some(New::Frame);
     }
 
     /// Goes somewhere at rapid.
     pub(super) fn rapid(&mut self, span: Span) {
         self.begins(span);
-        (self.reframed, self.moved) = (false, true);
+        self.new = None;
     }
 
     /// The first move of all: without a tool no length holds, and nothing goes home.
@@ -114,31 +118,16 @@ impl Running {
     /// Cuts, at `span`.
     pub(super) fn cuts(&mut self, span: Span) {
         self.begins(span);
+        let new = self.new.take();
         if self.tool == Some(0) {
             self.tool = None;
             let message = "tool 0 is an empty spindle, and cuts here";
             self.diagnostics.push(Diagnostic::error("tool-zero", message).at(span, ""));
-        } else if self.reframed {
-            let message =
-                "the first move in another frame cuts, and where the tool is in that frame nobody knows";
+        } else if let Some(new) = new {
             self.diagnostics.push(
-                Diagnostic::error("frame-cut", message)
-                    .at(span, "")
-                    .hint("RAPID before it, to a place above the work"),
-            );
-        } else if !self.moved
-            && let Some(tool) = self.tool
-        {
-            let message = format!(
-                "tool {tool} begins with a cut: over where that starts it comes down from its home, at its feed"
-            );
-            self.diagnostics.push(
-                Diagnostic::warning("cut-first", message)
-                    .at(span, "")
-                    .hint("RAPID before it, to a place above the work"),
+                first_cut(new, self.tool).at(span, "").hint("RAPID before it, to a place above the work"),
             );
         }
-        (self.reframed, self.moved) = (false, true);
         let tool = self.tool.map_or(String::new(), |tool| format!("tool {tool} cuts here, and "));
         let message = match self.spindle {
             Spindle::Turns(_) => None,
@@ -160,6 +149,24 @@ impl Running {
             self.diagnostics.push(Diagnostic::warning("coolant-missing", message).at(span, "").hint(
                 "COOLNT/ON behind the tool call starts it; COOLNT/OFF before says that it is to be off",
             ));
+        }
+    }
+}
+
+/// What is said of a first move that cuts.
+fn first_cut(new: New, tool: Option<u32>) -> Diagnostic {
+    match new {
+        New::Tool => {
+            let tool = tool.unwrap_or_default();
+            let message = format!(
+                "tool {tool} begins with a cut: over where that starts it comes down from its home, at its feed"
+            );
+            Diagnostic::warning("cut-first", message)
+        }
+        New::Frame => {
+            let message =
+                "the first move in another frame cuts, and where the tool is in that frame nobody knows";
+            Diagnostic::error("frame-cut", message)
         }
     }
 }

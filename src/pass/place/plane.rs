@@ -120,12 +120,11 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diag
     if let Err(note) = turns_at_rapid(&intent.program.steps, first, near(machine)) {
         return Ok(note);
     }
-    let retracts = machine.with_axes(&axes)?.retracts(Z);
+    let own = machine.with_axes(&axes)?;
     let mut walk = Walk {
         first,
-        machine,
+        machine: &own,
         near: near(machine),
-        retracts,
         all: Vec::new(),
         plane: None,
         at: None,
@@ -222,8 +221,6 @@ struct Walk<'m> {
     machine: &'m Machine,
     /// How far directions of one plane may be apart, radians.
     near: f64,
-    /// Whether Z has a home to retract to.
-    retracts: bool,
     all: All,
     plane: Option<Tilted>,
     /// Where the input takes the tip to be, in the work's own coordinates.
@@ -321,7 +318,7 @@ impl Walk<'_> {
             let message = "a plane is to be tilted, and no tool is called: its length is not known";
             return Err(Diagnostic::error("tool-missing", message).at(span, "").into());
         }
-        if !self.retracts {
+        if !self.machine.retracts(Z) {
             let message = "the tool turns here, and the machine file states no place in Z where it is clear";
             return Err(Diagnostic::refusal("home-missing", message)
                 .at(span, "")
