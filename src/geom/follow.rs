@@ -463,12 +463,7 @@ impl<'a> Runner<'a> {
 }
 
 /// Runs along both and bounds every interval; `met` is told the piece of `curve` that it belongs to.
-fn along(
-    path: &[Bezier],
-    curve: &[Bezier],
-    bounds: &mut Bounds,
-    mut met: impl FnMut(&mut Bounds, usize),
-) {
+fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds, mut met: impl FnMut(&mut Bounds, usize)) {
     let (mut p, mut c) = (Runner::new(path), Runner::new(curve));
     loop {
         let at = c.at;

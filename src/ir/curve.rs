@@ -176,7 +176,8 @@ impl Polyline {
             let to = to.min(all.len());
             all[from.min(to)..to].to_vec()
         }
-        let start = match from.checked_sub(1).and_then(|last| self.values.chunks_exact(self.stride).nth(last)) {
+        let start = match from.checked_sub(1).and_then(|last| self.values.chunks_exact(self.stride).nth(last))
+        {
             Some(point) => padded(point),
             None => self.start,
         };

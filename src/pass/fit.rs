@@ -58,7 +58,8 @@ fn run(
     let metric = frame.metric(fitting.tolerance);
     let scaled = |p: &Position| metric.scaled(&Bezier::line(*p, *p)).start();
     let unscaled = |p: &Position| metric.unscaled(&Bezier::line(*p, *p)).start();
-    let points: Vec<Position> = std::iter::once(line.start).chain(line.points()).map(|p| scaled(&p)).collect();
+    let points: Vec<Position> =
+        std::iter::once(line.start).chain(line.points()).map(|p| scaled(&p)).collect();
     let parts = smooth::parts(&points, fitting)?;
     let counted = |feed| of_curve(&cut.curve, feed, frame.axes, frame.machine, frame.radius).0;
     let feed = if cut.role == Role::AsAsked { cut.feed } else { cut.feed.map(counted) };

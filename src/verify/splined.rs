@@ -65,10 +65,10 @@ impl Cursor<'_> {
     pub(super) fn is_mixed(&self, line: &Polyline, written: &Written) -> bool {
         match written {
             Written::Lines(points) => {
-                let next = self.decimals.program.steps.get(self.at + 1).and_then(|located| located.step.cut());
-                let spline = |cut: &Cut<_, Written>| {
-                    matches!(cut.curve, Written::Polynomial(_) | Written::Nurbs(_))
-                };
+                let next =
+                    self.decimals.program.steps.get(self.at + 1).and_then(|located| located.step.cut());
+                let spline =
+                    |cut: &Cut<_, Written>| matches!(cut.curve, Written::Polynomial(_) | Written::Nurbs(_));
                 points.count() - self.within < line.count() && next.is_some_and(spline)
             }
             Written::Polynomial(_) | Written::Nurbs(_) => self.ends_within(line, 0, written).is_some(),

@@ -1,5 +1,7 @@
 //! A run of points as splines and lines, in order.
 
+use super::super::bezier::Bezier;
+use super::super::follow::follow;
 use super::super::nurbs::Nurbs;
 use super::{Fitting, Made, RUN, Run, corners, lines, made};
 use crate::units::Position;
@@ -37,7 +39,7 @@ pub fn parts(points: &[Position], fitting: Fitting) -> Option<Vec<Part>> {
     if points.len() < RUN || !points.iter().flatten().all(|x| x.is_finite()) {
         return None;
     }
-    let parts = joined(points, stretches(points, fitting));
+    let parts = joined(points, stretches(points, fitting), fitting.tolerance);
     parts.iter().any(|part| matches!(part, Part::Spline(..))).then_some(parts)
 }
 
@@ -80,7 +82,7 @@ fn stretches(points: &[Position], Fitting { tolerance, corner }: Fitting) -> Vec
 
 /// Stretches that follow each other as one spline with triple knots, where that has fewer blocks than lines. As many lines in a row
 /// as would be a run end a spline; fewer are straight spans of it.
-fn joined(points: &[Position], stretches: Vec<Stretch>) -> Vec<Part> {
+fn joined(points: &[Position], stretches: Vec<Stretch>, tolerance: f64) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let mut group: Vec<Stretch> = Vec::new();
     let mut rest = stretches.into_iter().peekable();
@@ -99,12 +101,12 @@ fn joined(points: &[Position], stretches: Vec<Stretch>) -> Vec<Part> {
             group.extend(kept);
             continue;
         }
-        close(points, std::mem::take(&mut group), &mut parts);
+        close(points, std::mem::take(&mut group), tolerance, &mut parts);
         if let Some(last) = kept.last() {
             add_lines(last.last, &mut parts);
         }
     }
-    close(points, group, &mut parts);
+    close(points, group, tolerance, &mut parts);
     parts
 }
 
@@ -117,9 +119,9 @@ fn add_lines(last: usize, parts: &mut Vec<Part>) {
 }
 
 /// Ends a group of stretches.
-fn close(points: &[Position], group: Vec<Stretch>, parts: &mut Vec<Part>) {
+fn close(points: &[Position], group: Vec<Stretch>, tolerance: f64, parts: &mut Vec<Part>) {
     let (Some(first), Some(last)) = (group.first(), group.last()) else { return };
-    let (first, last) = (first.first, last.last);
+    let (first, last, count) = (first.first, last.last, group.len());
     let (mut spans, mut knots, mut control) = (0, Vec::new(), Vec::new());
     let mut t = 0.0;
     for stretch in group {
@@ -140,13 +142,21 @@ fn close(points: &[Position], group: Vec<Stretch>, parts: &mut Vec<Part>) {
     }
     knots.extend([t; 4]);
     let weights = vec![1.0; control.len()];
-    // No fewer blocks than lines: then lines it is.
+    let moves = |pair: &&[Position]| pair[0] != pair[1];
+    // No fewer blocks than lines: then lines it is. Nor may both part where stretches meet.
+    let holds = |spline: &Nurbs| {
+        let pieces: Vec<Bezier> = spline.beziers().map(|(piece, _)| piece).collect();
+        let lines = points[first..=last].windows(2).filter(moves).map(|pair| Bezier::line(pair[0], pair[1]));
+        let lines: Vec<Bezier> = lines.collect();
+        follow(&pieces, &lines, tolerance).is_ok_and(|found| found.distance <= tolerance)
+    };
     let saves = spans + 3 < last - first + 1;
+    let alone = count == 1;
     // Points that repeat the last place are lines that go nowhere: the spline ends at the first of them.
     let repeats = points[first..=last].iter().rev().take_while(|p| **p == points[last]).count();
     let end = last + 1 - repeats;
     match Nurbs::new(3, knots, control, weights) {
-        Ok(spline) if saves => {
+        Ok(spline) if saves && (alone || holds(&spline)) => {
             parts.push(Part::Spline(spline, end));
             if end < last {
                 add_lines(last, parts);
