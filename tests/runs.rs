@@ -2,7 +2,7 @@
 
 use crate::support::{machine, sources};
 use splinepost::dialect::DIALECTS;
-use splinepost::ir::{Step, Written};
+use splinepost::ir::Written;
 use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId};
 use splinepost::verify::Status;
@@ -66,7 +66,7 @@ impl Random {
 fn run(seed: u64) -> Vec<[f64; 3]> {
     use splinepost::geom::elementary::{cos, sin};
     let mut random = Random(seed);
-    let (mut at, mut heading) = ([0.0; 3], random.from(0.0, 6.28));
+    let (mut at, mut heading) = ([0.0; 3], random.from(0.0, std::f64::consts::TAU));
     let mut points = vec![at];
     for _ in 0..=(6.0 * random.next()) as usize {
         let count = random.one_of(&[1, 2, 3, 5, 20, 100, 300]);
@@ -200,10 +200,8 @@ fn a_run_that_fits_partly_is_fitted_partly() {
         assert!(10 * splined.blocks < splined.lines, "{}: {splined:?}", dialect.name);
         assert_eq!(report.path_blocks, splined.blocks + points.len() - 1 - splined.lines);
         let reading = (dialect.read)(&output.text, SourceId::INPUT, &machine).expect("it is read");
-        let cuts = reading.value.decimals.program.steps.iter().filter_map(|located| match &located.step {
-            Step::Cut(cut) => Some(matches!(cut.curve, Written::Lines(_))),
-            _ => None,
-        });
+        let cuts = reading.value.decimals.program.steps.iter().filter_map(|located| located.step.cut());
+        let cuts = cuts.map(|cut| matches!(cut.curve, Written::Lines(_)));
         assert_eq!(cuts.collect::<Vec<_>>(), [false, true, false], "{}\n{}", dialect.name, output.text);
         assert!(verifies(&text, &output.text, &machine, 0.005));
     }
