@@ -22,49 +22,75 @@ const POWERS: [i64; 19] = {
     powers
 };
 
+/// The same as floats, exactly: 10¹⁸ < 2⁵³·2¹⁸ and 5¹⁸ < 2⁵³.
+const FLOAT_POWERS: [f64; 19] = {
+    let mut powers = [1.0; 19];
+    let mut i = 0;
+    while i < 19 {
+        powers[i] = POWERS[i] as f64;
+        i += 1;
+    }
+    powers
+};
+
 /// 10^`digits` as an integer.
 pub fn power_of_ten(digits: u8) -> i64 {
     POWERS[usize::from(digits.min(MAX_DIGITS))]
 }
 
+/// 10^`digits` as a float, exactly.
+#[inline]
+fn float_power_of_ten(digits: u8) -> f64 {
+    FLOAT_POWERS[usize::from(digits.min(MAX_DIGITS))]
+}
+
 /// Rounds `x` to `digits` decimals and gives it in units of the last one; none where it is not finite or too large.
 ///
-/// With s = 10^digits the product x·s is wanted exactly. x is split in two halves of 26 and 27 bits; for
-/// s < 2²⁶ (seven decimals) both products are exact, and so is the error of their sum; above that the error is
-/// carried by a fused multiply-add. The nearest integer to the leading part is then moved by one where the error
-/// says so.
+/// With s = 10^digits the product x·s is wanted exactly. Unless its leading part lies in the middle of two integers, the
+/// nearest integer to that is the one; there the error of the product says which of the two it is.
+#[inline]
 pub fn round_units(x: f64, digits: u8) -> Option<i64> {
-    let s = power_of_ten(digits) as f64; // exact: 10¹⁸ < 2⁵³·2¹⁸ and 5¹⁸ < 2⁵³
+    // Adding 1.5·2⁵² pushes the fraction out of the mantissa, ties to even, and leaves the integer in its last bits.
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    let s = float_power_of_ten(digits);
     let product = x * s;
     // Also false for NaN. Below 2⁵¹ a quarter is representable, so that ties can be seen and `SHIFT` works.
     if !(product.abs() < 2_251_799_813_685_248.0) {
         return None;
     }
-    let error = if digits <= 7 {
+    let shifted = product + SHIFT;
+    let units = shifted.to_bits() as i64 - SHIFT.to_bits() as i64;
+    let rest = product - (shifted - SHIFT); // exact
+    if rest.abs() != 0.5 {
+        return Some(units);
+    }
+    // `units` is the even neighbour; the true value may lie on the other side of the middle.
+    let error = product_error(x, s, product);
+    let beyond = if rest < 0.0 { error < 0.0 } else { 0.0 < error };
+    Some(if !beyond {
+        units
+    } else if rest < 0.0 {
+        units - 1
+    } else {
+        units + 1
+    })
+}
+
+/// x·s − `product`, the error of the rounded product.
+///
+/// x is split in two halves of 26 and 27 bits; for s < 2²⁶ (seven decimals) both products are exact, and so is the error of
+/// their sum; above that the error is carried by a fused multiply-add.
+fn product_error(x: f64, s: f64, product: f64) -> f64 {
+    if s < 67_108_864.0 {
         // Veltkamp's split: `high` has 26 bits.
         let c = 134_217_729.0 * x;
         let high = c - (c - x);
         let low = x - high;
-        if c.is_finite() { (high * s - product) + low * s } else { x.mul_add(s, -product) }
-    } else {
-        x.mul_add(s, -product)
-    };
-    let nearest = round_ties_even(product);
-    let rest = product - nearest; // exact
-    let mut units = nearest as i64;
-    if rest == 0.5 {
-        // `nearest` is the even neighbour below; the true value may lie above the middle.
-        units += i64::from(0.0 < error);
-    } else if rest == -0.5 {
-        units -= i64::from(error < 0.0);
+        if c.is_finite() {
+            return (high * s - product) + low * s;
+        }
     }
-    Some(units)
-}
-
-/// Nearest integer, ties to even, for |x| < 2⁵¹: adding 1.5·2⁵² pushes the fraction out of the mantissa.
-fn round_ties_even(x: f64) -> f64 {
-    const SHIFT: f64 = 6_755_399_441_055_744.0;
-    (x + SHIFT) - SHIFT
+    x.mul_add(s, -product)
 }
 
 /// Where an axis counts from: a place, and its rounding. Positions are rounded from there, so that what is alike but for
@@ -88,8 +114,9 @@ impl Origin {
 /// The float nearest to `units` / 10^`digits`.
 ///
 /// One correctly rounded division of two exact numbers while |units| ≤ 2⁵³; larger integers are rounded first.
+#[inline]
 pub fn units_to_f64(units: i64, digits: u8) -> f64 {
-    units as f64 / power_of_ten(digits) as f64
+    units as f64 / float_power_of_ten(digits)
 }
 
 /// What one unit of the last decimal in every axis makes together, mm, rotary axes counted at `radius` mm.
@@ -254,45 +281,73 @@ pub enum NumberError {
 /// # Errors
 /// There is no digit, or there are more than a decimal holds.
 pub fn read_decimal(text: &[u8], comma: bool) -> Result<(Decimal, usize), NumberError> {
-    let mut at = 0;
-    let negative = match text.first() {
-        Some(b'-') => {
-            at = 1;
-            true
-        }
-        Some(b'+') => {
-            at = 1;
-            false
-        }
-        _ => false,
-    };
-    let (mut units, mut digits, mut seen, mut point): (u64, u8, bool, bool) = (0, 0, false, false);
-    while let Some(&byte) = text.get(at) {
-        match byte {
-            b'0'..=b'9' => {
-                seen = true;
-                if MAX_DIGITS <= digits || 99_999_999_999_999_999 < units {
-                    // Trailing zeros of a fraction cost nothing.
-                    if point && byte == b'0' {
-                        at += 1;
-                        continue;
-                    }
-                    return Err(NumberError::TooLong);
-                }
-                units = units * 10 + u64::from(byte - b'0');
-                digits += u8::from(point);
-            }
-            b'.' if !point => point = true,
-            b',' if !point && comma => point = true,
-            _ => break,
-        }
-        at += 1;
-    }
-    if !seen {
+    let scanned = scan(text, comma);
+    if scanned.count == 0 {
         return Err(NumberError::Missing);
     }
-    let units = units as i64; // below 10¹⁸ by the check above
-    Ok((Decimal::new(if negative { -units } else { units }, digits), at))
+    let (mut units, mut digits) = (scanned.mantissa, scanned.fraction);
+    if MOST_EXACT < scanned.count {
+        // Zeros before a number and behind a fraction cost nothing.
+        (units, digits) = significant(&text[..scanned.length]).ok_or(NumberError::TooLong)?;
+    }
+    let units = units as i64; // below 10¹⁸: at most 18 digits
+    let signed = if scanned.negative { -units } else { units };
+    Ok((Decimal::new(signed, digits as u8), scanned.length))
+}
+
+/// `[sign] digits [. digits]` at the start of a text, as far as it goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Scanned {
+    /// Whether the sign is a minus.
+    pub negative: bool,
+    /// All digits as one number. It holds as long as `count` is at most [`MOST_EXACT`].
+    pub mantissa: u64,
+    /// How many digits there are; without one there is no number.
+    pub count: usize,
+    /// How many of them stand behind the point.
+    pub fraction: usize,
+    /// How many bytes were read.
+    pub length: usize,
+}
+
+/// So many digits are below 10¹⁸ whatever they are.
+pub const MOST_EXACT: usize = 18;
+
+/// Scans `[sign] digits [. digits]`; a comma is a decimal point where `comma` says so.
+#[inline]
+pub fn scan(text: &[u8], comma: bool) -> Scanned {
+    let negative = text.first() == Some(&b'-');
+    let sign = usize::from(matches!(text.first(), Some(b'-' | b'+')));
+    let (mut mantissa, mut length, mut point) = (0u64, sign, None);
+    while let Some(&byte) = text.get(length) {
+        let digit = byte.wrapping_sub(b'0');
+        if digit <= 9 {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if point.is_none() && (byte == b'.' || (comma && byte == b',')) {
+            point = Some(length);
+        } else {
+            break;
+        }
+        length += 1;
+    }
+    let fraction = point.map_or(0, |point| length - point - 1);
+    let count = length - sign - usize::from(point.is_some());
+    Scanned { negative, mantissa, count, fraction, length }
+}
+
+/// The digits of a number that matter, and how many of them stand behind the point; none where these are too many.
+fn significant(number: &[u8]) -> Option<(u64, usize)> {
+    let point = number.iter().position(|byte| matches!(byte, b'.' | b',')).unwrap_or(number.len());
+    let (whole, fraction) = (&number[..point], number.get(point + 1..).unwrap_or_default());
+    let zeros = fraction.iter().rev().take_while(|byte| **byte == b'0').count();
+    let fraction = &fraction[..fraction.len() - zeros];
+    let digits = || whole.iter().chain(fraction).filter(|byte| byte.is_ascii_digit());
+    let leading = digits().take_while(|byte| **byte == b'0').count();
+    let fits = digits().count() - leading <= MOST_EXACT && fraction.len() <= usize::from(MAX_DIGITS);
+    fits.then(|| {
+        let value = digits().fold(0u64, |value, byte| value * 10 + u64::from(byte - b'0'));
+        (value, fraction.len())
+    })
 }
 
 #[cfg(test)]
@@ -349,6 +404,20 @@ mod tests {
         assert_eq!(read_decimal(zeros, false), Ok((Decimal::new(1, 0), zeros.len())));
     }
 
+    #[test]
+    fn digits_that_do_not_matter_do_not_count() {
+        assert_eq!(read_decimal(b"000000000000000000000012.5", false), Ok((Decimal::new(125, 1), 26)));
+        assert_eq!(read_decimal(b"0.000000000000000001", false), Ok((Decimal::new(1, 18), 20)));
+        assert_eq!(read_decimal(b"0.0000000000000000001", false), Err(NumberError::TooLong));
+        assert_eq!(
+            read_decimal(b"999999999999999999", false),
+            Ok((Decimal::new(999_999_999_999_999_999, 0), 18))
+        );
+        assert_eq!(read_decimal(b"1000000000000000000", false), Err(NumberError::TooLong));
+        assert_eq!(read_decimal(b"0,00000000000000000000", true), Ok((Decimal::ZERO, 22)));
+        assert_eq!(read_decimal(b"+.", false), Err(NumberError::Missing));
+    }
+
     proptest! {
         #[test]
         fn rounds_as_the_standard_library_prints(x in -1e5f64..1e5, digits in 0u8..=9) {
@@ -363,6 +432,53 @@ mod tests {
             let x = f64::from_bits((middle.to_bits() as i64 + ulps) as u64);
             let printed: f64 = format!("{x:.0$}", usize::from(digits)).parse().unwrap();
             prop_assert_eq!(printed, text(x, digits).parse::<f64>().unwrap());
+        }
+
+        /// Any bytes, read one by one.
+        #[test]
+        fn a_number_is_what_its_bytes_say(text in "[+-]?[0-9]{0,12}[.,]?[0-9]{0,12}[A-Z ]?[0-9]{0,3}", comma: bool) {
+            let bytes = text.as_bytes();
+            let (mut at, mut value, mut count, mut fraction) = (0, 0u128, 0, 0);
+            let mut point = false;
+            if matches!(bytes.first(), Some(b'+' | b'-')) {
+                at = 1;
+            }
+            while let Some(byte) = bytes.get(at) {
+                if byte.is_ascii_digit() {
+                    value = value * 10 + u128::from(byte - b'0');
+                    count += 1;
+                    fraction += usize::from(point);
+                } else if !point && (*byte == b'.' || (comma && *byte == b',')) {
+                    point = true;
+                } else {
+                    break;
+                }
+                at += 1;
+            }
+            let scanned = scan(bytes, comma);
+            prop_assert_eq!((scanned.length, scanned.count, scanned.fraction), (at, count, fraction));
+            prop_assert_eq!(scanned.negative, bytes.first() == Some(&b'-'));
+            if count <= MOST_EXACT {
+                prop_assert_eq!(u128::from(scanned.mantissa), value);
+            }
+        }
+
+        /// Every spelling, against the digits as the standard library prints them.
+        #[test]
+        fn numbers_are_spelled_digit_by_digit(
+            units in proptest::prop_oneof![proptest::num::i64::ANY, -2_000i64..2_000, -99_999_999i64..99_999_999],
+            digits in 0u8..=18, point_always: bool, sign_always: bool, leading_zero: bool,
+        ) {
+            let spelling = Spelling { point_always, sign_always, leading_zero };
+            let all = format!("{:0width$}", units.unsigned_abs(), width = usize::from(digits) + 1);
+            let (whole, fraction) = all.split_at(all.len() - usize::from(digits));
+            let fraction = fraction.trim_end_matches('0');
+            let sign = if units < 0 { "-" } else if sign_always { "+" } else { "" };
+            let whole = if whole == "0" && !leading_zero && !fraction.is_empty() { "" } else { whole };
+            let point = if fraction.is_empty() && !point_always { "" } else { "." };
+            let mut out = b"X".to_vec();
+            write_units(&mut out, units, digits, spelling);
+            prop_assert_eq!(String::from_utf8(out).unwrap(), format!("X{sign}{whole}{point}{fraction}"));
         }
 
         #[test]
