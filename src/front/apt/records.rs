@@ -108,12 +108,12 @@ impl<'t> Records<'t> {
 
     /// A record of one line or a part of it.
     fn borrowed(&self, kind: Kind, start: usize, end: usize) -> Option<Record<'t>> {
-        let text = &self.text[start..end];
-        let trimmed = text.trim_ascii();
+        let text = self.text[start..end].trim_ascii_start();
+        let trimmed = text.trim_ascii_end();
         if trimmed.is_empty() {
             return None;
         }
-        let start = start + (text.len() - text.trim_ascii_start().len());
+        let start = end - text.len();
         let range = start..start + trimmed.len();
         let (kind, text) = if MAX_RECORD < trimmed.len() { (Kind::TooLong, "") } else { (kind, trimmed) };
         Some(Record { kind, line: self.line, range, text: Cow::Borrowed(text), joints: Vec::new() })

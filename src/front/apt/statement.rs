@@ -9,6 +9,7 @@
 //!
 //! Blanks may stand anywhere but in numbers. A number may have the exponents E and D.
 
+use crate::decimal::{self, MOST_EXACT};
 use nom::IResult;
 use nom::bytes::complete::take_while;
 use nom::character::complete::char;
@@ -142,15 +143,16 @@ fn fail<T>(at: &str) -> IResult<&str, T> {
 #[inline]
 pub(super) fn number(input: &str) -> IResult<&str, f64> {
     let bytes = input.as_bytes();
-    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    // The library also reads `inf` and `nan`; a CL number begins with a digit or a point and one.
-    let begins = match bytes.get(sign) {
-        Some(b'.') => bytes.get(sign + 1).is_some_and(u8::is_ascii_digit),
-        Some(first) => first.is_ascii_digit(),
-        None => false,
-    };
-    if !begins {
+    let scanned = decimal::scan(bytes, false);
+    // The library also reads `inf` and `nan`; a CL number has digits.
+    if scanned.count == 0 {
         return fail(input);
+    }
+    // A short decimal is the quotient of two floats that are exact, and a quotient is rounded once: the nearest float.
+    let ends = !matches!(bytes.get(scanned.length), Some(b'E' | b'e' | b'D' | b'd'));
+    if ends && scanned.count <= MOST_EXACT && scanned.mantissa < 1 << 53 {
+        let value = decimal::units_to_f64(scanned.mantissa as i64, scanned.fraction as u8);
+        return Ok((&input[scanned.length..], if scanned.negative { -value } else { value }));
     }
     let Ok((value, length)) = fast_float2::parse_partial::<f64, _>(bytes) else { return fail(input) };
     if matches!(bytes.get(length), Some(b'D' | b'd')) {
