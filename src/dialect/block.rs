@@ -232,8 +232,12 @@ impl Numbering {
 /// The digits at the start of `text` as a block number, and how long they are.
 #[inline]
 pub fn block_number(text: &str) -> Option<(u64, usize)> {
-    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
-    text[..digits].parse().ok().map(|number| (number, digits))
+    let digits = text.bytes().map(|byte| byte.wrapping_sub(b'0')).take_while(|digit| *digit <= 9);
+    let next = |(number, count): (u64, usize), digit| {
+        Some((number.checked_mul(10)?.checked_add(u64::from(digit))?, count + 1))
+    };
+    let mut digits = digits;
+    digits.try_fold((0, 0), next).filter(|(_, count)| 0 < *count)
 }
 
 /// About how many bytes a program takes, so that a large one is written without moving it about.

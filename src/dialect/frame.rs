@@ -23,6 +23,8 @@ pub struct Frame<'m> {
     pending: Vec<&'m Template>,
     shifting: Option<Shifting>,
     assign: Template,
+    /// What the lines that may stand behind the header begin and end with.
+    outlines: Vec<(String, String)>,
     started: bool,
     name: Option<String>,
 }
@@ -46,19 +48,25 @@ pub enum Met {
 impl<'m> Frame<'m> {
     /// At the start of a program.
     pub fn new(machine: &'m Machine) -> Frame<'m> {
-        let frame = &machine.frame;
-        Frame {
+        let machine_frame = &machine.frame;
+        let mut frame = Frame {
             machine,
             header: 0,
-            end: frame.footer.iter().chain(&frame.close).collect(),
+            end: machine_frame.footer.iter().chain(&machine_frame.close).collect(),
             ended: 0,
             doubtful: Vec::new(),
             pending: Vec::new(),
             shifting: None,
             assign: Template(machine.dialect.parameter.assign.to_owned()),
+            outlines: Vec::new(),
             started: false,
             name: None,
-        }
+        };
+        let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
+        let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
+        frame.outlines =
+            all.map(Template::outline).map(|(start, end)| (start.to_owned(), end.to_owned())).collect();
+        frame
     }
 
     /// Whether the whole header was met.
@@ -160,6 +168,11 @@ impl<'m> Frame<'m> {
                 }
             }
         }
+        // Blocks of moves are by far the most, and hardly one of these lines begins and ends like one.
+        if !self.outlines.iter().any(|(start, end)| begins_with(text, start) && text.ends_with(end.as_str()))
+        {
+            return Met::Other;
+        }
         if let Some(template) = self.end.first().copied()
             && begins_alike(template, text)
             && self.switch(text).is_some()
@@ -169,7 +182,6 @@ impl<'m> Frame<'m> {
             self.ended = 1;
             return Met::Fixed;
         }
-        // Blocks of moves are by far the most, and hardly one of these lines begins like one; a byte decides.
         for lines in &self.lists()[..14] {
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
@@ -390,6 +402,15 @@ impl<'m> Frame<'m> {
         let (Some(number), Some(value)) = (number, value) else { return false };
         assembler.parameters.insert(number, value);
         true
+    }
+}
+
+/// Whether a line begins with a text; mostly the first byte decides.
+#[inline]
+fn begins_with(line: &str, start: &str) -> bool {
+    match (start.as_bytes().first(), line.as_bytes().first()) {
+        (Some(expected), Some(found)) if expected != found => false,
+        _ => line.starts_with(start),
     }
 }
 

@@ -17,13 +17,18 @@ impl Template {
         line
     }
 
+    /// The fixed texts before the first variable and behind the last; without variables both are the whole.
+    pub fn outline(&self) -> (&str, &str) {
+        let line = self.0.as_str();
+        (&line[..line.find('{').unwrap_or(line.len())], &line[line.rfind('}').map_or(0, |at| at + 1)..])
+    }
+
     /// The values of the variables where `line` is this template filled in; none where it is not.
     ///
     /// A value is what stands up to the next fixed text; it is not empty.
     pub fn matched<'l>(&self, line: &'l str) -> Option<Vec<(String, &'l str)>> {
         // Most lines are ruled out by their end.
-        let fixed = self.0.rfind('}').map_or(0, |at| at + 1);
-        if !line.ends_with(&self.0[fixed..]) {
+        if !line.ends_with(self.outline().1) {
             return None;
         }
         let mut values = Vec::new();

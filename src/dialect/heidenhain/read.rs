@@ -169,7 +169,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         let span = Span::new(source, line.range());
         goes_on = frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed;
         if goes_on {
-            goes_on = body.ends_with('~');
+            goes_on = ends_marked(body);
             continue;
         }
         match keyword {
@@ -192,6 +192,12 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     Ok(Warned { value: reading, warnings: warned.warnings })
 }
 
+/// Whether a line goes on in the next: it ends with `~`.
+#[inline]
+fn ends_marked(line: &str) -> bool {
+    line.as_bytes().last() == Some(&b'~')
+}
+
 /// The capital letters at the start of a block, which say what it is.
 #[inline]
 fn keyword(body: &str) -> &str {
@@ -209,7 +215,8 @@ impl<'t> Reader<'t, '_> {
         let mut block = Block::new(keyword == "SPL");
         block.polar = keyword == "CP";
         let known = self.assembler.diagnostics.0.len();
-        let head = start..start + body.trim_end_matches(['~', ' ']).len();
+        let marks = body.bytes().rev().take_while(|byte| matches!(byte, b'~' | b' ')).count();
+        let head = start..start + body.len() - marks;
         let mut text = &body[keyword.len()..];
         let mut at = start + keyword.len();
         loop {
@@ -265,10 +272,8 @@ impl<'t> Reader<'t, '_> {
     /// `words = { { blank }, word }, { blank }, [ remark ]`; whether the block goes on in the next line, with `~`.
     #[inline]
     fn words(&mut self, text: &'t str, start: usize, block: &mut Block) -> bool {
-        let (code, goes_on) = match text.strip_suffix('~') {
-            Some(code) => (code, true),
-            None => (text, false),
-        };
+        let goes_on = ends_marked(text);
+        let code = if goes_on { &text[..text.len() - 1] } else { text };
         let mut rest = code.trim_ascii_start();
         while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
@@ -431,9 +436,9 @@ impl<'t> Reader<'t, '_> {
                 .at(span, "")
                 .hint("L, LN, C, CC, CP, SPL, comments and the lines of the machine file are read"),
         );
-        let mut goes_on = body.ends_with('~');
+        let mut goes_on = ends_marked(body);
         while goes_on && let Some(next) = self.lines.next() {
-            goes_on = next.text.ends_with('~');
+            goes_on = ends_marked(next.text);
         }
     }
 
