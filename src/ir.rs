@@ -399,12 +399,16 @@ impl Polyline {
 
     /// The points after the start.
     pub fn points(&self) -> impl Iterator<Item = Position> + '_ {
-        self.values.chunks_exact(self.stride).map(|chunk| {
-            let mut point = [0.0; MAX_AXES];
-            point[..chunk.len()].copy_from_slice(chunk);
-            point
-        })
+        self.values.chunks_exact(self.stride).map(padded)
     }
+}
+
+/// Some coordinates as a place that has them all, the others zero.
+#[inline]
+pub(crate) fn padded<N: Copy + Default>(coordinates: &[N]) -> [N; MAX_AXES] {
+    let mut place = [N::default(); MAX_AXES];
+    place[..coordinates.len()].copy_from_slice(coordinates);
+    place
 }
 
 /// A position in units of each axis' last decimal.
@@ -466,11 +470,7 @@ impl WrittenPoints {
 
     /// The points after the start.
     pub fn points(&self) -> impl Iterator<Item = Units> + '_ {
-        self.units.chunks_exact(self.stride).map(|chunk| {
-            let mut point = [0; MAX_AXES];
-            point[..chunk.len()].copy_from_slice(chunk);
-            point
-        })
+        self.units.chunks_exact(self.stride).map(padded)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Straight moves that were asked as such.
 
 use super::{Cursor, Found};
+use crate::decimal::units_to_f64;
 use crate::diagnostic::Diagnostics;
 use crate::geom::deviation::Bound;
 use crate::geom::direction;
-use crate::ir::{Polyline, Written, WrittenPoints};
+use crate::ir::{Decimals, Polyline, Written, WrittenPoints, padded};
 use crate::units::{Kind, Position};
 
 impl Cursor<'_> {
@@ -33,32 +34,36 @@ impl Cursor<'_> {
             return Err(self.differs("step-differs", "here a straight move was asked".to_owned()));
         };
         let (mut worst, mut turned) = (0.0f64, 0.0f64);
-        let axes = self.decimals.program.axes;
+        let Decimals { digits, program, .. } = self.decimals;
+        let axes = program.axes;
         self.starts_at(&asked.start, points)?;
         let linear: Vec<usize> = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).collect();
-        let (mut from, mut length) = (asked.start, 0.0);
-        for point in asked.points() {
-            let Some(units) = self.next_point(points) else {
+        let places = axes.direction().unwrap_or(asked.stride);
+        // No more points were met than there are.
+        let mut found = points.units[self.within * points.stride..].chunks_exact(points.stride);
+        let (mut from, mut length) = (&asked.start[..asked.stride], 0.0);
+        for point in asked.values.chunks_exact(asked.stride) {
+            let Some(units) = found.next() else {
                 return Err(self.differs("less-than-asked", "a straight move is missing here".to_owned()));
             };
-            for axis in 0..asked.stride {
-                if self.units(axis, point[axis]) != Some(units[axis]) {
-                    let name = self.decimals.program.axes.name(axis);
-                    self.within -= 1;
-                    return Err(
-                        self.differs("point-differs", format!("{name} was asked to be {}", point[axis]))
-                    );
+            for (axis, x) in point.iter().enumerate() {
+                let read = units.get(axis).copied().unwrap_or_default();
+                if self.units(axis, *x) != Some(read) {
+                    let name = axes.name(axis);
+                    return Err(self.differs("point-differs", format!("{name} was asked to be {x}")));
+                }
+                if axis < places {
+                    worst = worst.max((units_to_f64(read, digits[axis]) - x).abs());
                 }
             }
-            let read = self.decimals.position(&units);
-            let places = axes.direction().unwrap_or(asked.stride);
-            worst = (0..places).fold(worst, |worst, i| worst.max((read[i] - point[i]).abs()));
             if let Some(first) = axes.direction() {
+                let (read, point) = (self.decimals.position(&padded(units)), padded(point));
                 turned = turned.max(direction::between(&read, &point, first));
             }
             length +=
                 linear.iter().map(|i| (point[*i] - from[*i]) * (point[*i] - from[*i])).sum::<f64>().sqrt();
             from = point;
+            self.within += 1;
         }
         let count = asked.count();
         self.leave(points);
