@@ -199,8 +199,8 @@ fn steepest(decimals: &Decimals, line: &WrittenPoints, counts: &[usize]) -> [(f6
             squares[i] = way * way;
             path += counted[i] * squares[i];
         }
-        for (greatest, square) in greatest.iter_mut().zip(squares) {
-            let share = if path == 0.0 { f64::from(square != 0.0) } else { square / path };
+        for (greatest, square) in greatest.iter_mut().zip(&squares[..to.len()]) {
+            let share = if path == 0.0 { f64::from(*square != 0.0) } else { square / path };
             if greatest.0 < share {
                 *greatest = (share, block);
             }

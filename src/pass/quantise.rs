@@ -135,6 +135,7 @@ fn coefficient(a: f64, digits: u8) -> Option<Decimal> {
 }
 
 impl Quantiser<'_> {
+    #[inline]
     fn units(&self, axis: usize, x: f64) -> Result<i64, Unwritable> {
         self.origin[axis].round(x, self.digits[axis]).ok_or(Unwritable)
     }
