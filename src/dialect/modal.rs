@@ -17,6 +17,8 @@ pub struct Modal<'m> {
     /// How numbers are spelled.
     pub spelling: Spelling,
     digits: [u8; MAX_AXES],
+    /// What stands before the value of each axis.
+    names: [Vec<u8>; MAX_AXES],
     /// The first component of the tool's direction, in five axes.
     pub direction: Option<usize>,
     /// Where the text counts each axis from, in units of its last decimal.
@@ -38,6 +40,17 @@ pub struct Modal<'m> {
     number: u32,
 }
 
+/// The name of an axis, with `=` where a value cannot follow it directly.
+fn name(machine: &Machine, i: usize) -> Vec<u8> {
+    if let Some(component) = machine.axes.direction().and_then(|first| i.checked_sub(first)) {
+        return machine.dialect.direction[component].as_bytes().to_vec();
+    }
+    match machine.axes.name(i).as_bytes() {
+        letter @ [_] => letter.to_vec(),
+        name => [name, b"="].concat(),
+    }
+}
+
 impl<'m> Modal<'m> {
     /// An empty text for a program of about `size` bytes.
     pub fn new(machine: &'m Machine, size: usize) -> Modal<'m> {
@@ -46,6 +59,9 @@ impl<'m> Modal<'m> {
             machine,
             spelling: machine.text.spelling(),
             digits: machine.axis_digits(),
+            names: std::array::from_fn(
+                |i| if i < machine.axes.count() { name(machine, i) } else { Vec::new() },
+            ),
             direction: machine.axes.direction(),
             shift: [0; MAX_AXES],
             reversed: machine.reversed(),
@@ -232,15 +248,9 @@ impl<'m> Modal<'m> {
     /// The name of an axis, with `=` where a value cannot follow it directly.
     #[inline]
     pub fn axis_name(&mut self, i: usize) {
-        if let Some(component) = self.direction.and_then(|first| i.checked_sub(first)) {
-            return self.text(self.machine.dialect.direction[component]);
-        }
-        match self.machine.axes.name(i).as_bytes() {
+        match self.names[i].as_slice() {
             [letter] => self.out.push(*letter),
-            name => {
-                self.out.extend_from_slice(name);
-                self.out.push(b'=');
-            }
+            name => self.out.extend_from_slice(name),
         }
     }
 
@@ -267,6 +277,13 @@ impl<'m> Modal<'m> {
         }
         for i in self.direction.unwrap_or(count)..count {
             self.axis(i, point[i]);
+        }
+    }
+
+    /// The words of the tool's direction, where it is led: they are never modal.
+    pub fn directions(&mut self, point: &Units) {
+        if let Some(first) = self.direction {
+            (first..first + 3).for_each(|i| self.axis(i, point[i]));
         }
     }
 
