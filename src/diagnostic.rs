@@ -9,7 +9,8 @@
 //!  "end_line":3,"end_column":5,"label":"…","hints":["…"]}
 //! ```
 //!
-//! Columns count characters from 1; `file` to `label` are null where a diagnostic has no place.
+//! Columns count characters from 1; `file` to `label` are null where a diagnostic has no place. Where more than one place belongs
+//! to it, as in two programs that differ, `others` has them: `[{"file":"b.h","line":7,…,"label":"…"}]`.
 
 use crate::source::{LineColumn, Sources, Span};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -30,6 +31,10 @@ pub enum Severity {
     Error,
 }
 
+/// Places and what is there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Others(pub Vec<(Span, String)>);
+
 /// One thing to tell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
@@ -43,6 +48,8 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// What is there; may be shorter than the message, since it points.
     pub label: String,
+    /// Other places that belong to it, in any text, and what is there; most have none, and a result is no larger for it.
+    pub others: Option<Box<Others>>,
     /// What to do.
     pub hints: Vec<String>,
 }
@@ -55,6 +62,7 @@ impl Diagnostic {
             message: message.into(),
             span: None,
             label: String::new(),
+            others: None,
             hints: Vec::new(),
         }
     }
@@ -85,6 +93,18 @@ impl Diagnostic {
         self.span = Some(span);
         self.label = label.into();
         self
+    }
+
+    /// Points at another place too.
+    #[must_use]
+    pub fn and_at(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
+        self.others.get_or_insert_default().0.push((span, label.into()));
+        self
+    }
+
+    /// The other places.
+    pub fn others(&self) -> impl Iterator<Item = &(Span, String)> {
+        self.others.iter().flat_map(|others| &others.0)
     }
 
     /// Adds a way out.
@@ -126,6 +146,18 @@ struct JsonLine<'a> {
     end_column: Option<usize>,
     label: Option<&'a str>,
     hints: &'a [String],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    others: Vec<JsonPlace<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonPlace<'a> {
+    file: &'a str,
+    line: usize,
+    column: usize,
+    end_line: usize,
+    end_column: usize,
+    label: &'a str,
 }
 
 impl Diagnostics {
@@ -175,13 +207,17 @@ impl Diagnostics {
             let mut group = annotate_snippets::Group::with_title(
                 level.primary_title(diagnostic.message.as_str()).id(diagnostic.id),
             );
-            if let Some((span, source)) = diagnostic.span.and_then(|s| Some((s, sources.get(s.source)?))) {
+            let first = diagnostic.span.map(|span| (span, &diagnostic.label));
+            let others = diagnostic.others().map(|(span, label)| (*span, label));
+            for (i, (span, label)) in first.into_iter().chain(others).enumerate() {
+                let Some(source) = sources.get(span.source) else { continue };
                 let (window, first_line, range) = window(&source.text, span);
                 // A carriage return would be drawn; a blank in its place moves nothing.
                 let window = window.replace('\r', " ");
-                let mut annotation = AnnotationKind::Primary.span(range);
-                if !diagnostic.label.is_empty() {
-                    annotation = annotation.label(diagnostic.label.as_str());
+                let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
+                let mut annotation = kind.span(range);
+                if !label.is_empty() {
+                    annotation = annotation.label(label.as_str());
                 }
                 group = group.element(
                     Snippet::source(window)
@@ -217,12 +253,30 @@ impl Diagnostics {
                 end_column: end.map(|at| at.column),
                 label: place.map(|_| diagnostic.label.as_str()),
                 hints: &diagnostic.hints,
+                others: diagnostic
+                    .others()
+                    .filter_map(|(span, label)| json_place(*span, label, sources))
+                    .collect(),
             };
             text.push_str(&serde_json::to_string(&line).unwrap_or_default());
             text.push('\n');
         }
         text
     }
+}
+
+fn json_place<'a>(span: Span, label: &'a str, sources: &'a Sources) -> Option<JsonPlace<'a>> {
+    let source = sources.get(span.source)?;
+    let start = LineColumn::of(&source.text, span.start as usize);
+    let end = LineColumn::of(&source.text, span.end as usize);
+    Some(JsonPlace {
+        file: &source.name,
+        line: start.line,
+        column: start.column,
+        end_line: end.line,
+        end_column: end.column,
+        label,
+    })
 }
 
 /// The lines around a span, so that a gigabyte is not scanned for one message; a line longer than any screen is cut.

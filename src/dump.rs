@@ -1,11 +1,25 @@
 //! Programs as text, to be looked at: one step a line, numbers in full precision.
 
+use crate::geom::arc::Arc;
 use crate::ir::{
-    ArcBy, Auxiliary, Curve, Cut, Decimals, Described, Intent, Method, Polyline, Role, Shift, Step, Units,
-    Written,
+    ArcBy, Auxiliary, Circle, Curve, Cut, Decimals, Described, Intent, Method, Polyline, Role, Shift, Step,
+    Units, Written,
 };
 use crate::units::{Axes, Position};
 use std::fmt::{Display, Write as _};
+
+/// The plane of an arc: its name, or the axis that it is square to.
+fn plane(arc: &Arc) -> String {
+    match arc.plane() {
+        Some(plane) => format!("{plane:?}"),
+        None => format!("about {:?}", arc.frame().axes()[2]),
+    }
+}
+
+/// The centre of an arc: in its plane, or in X Y Z where that is tilted.
+fn center(arc: &Arc) -> Vec<f64> {
+    if arc.plane().is_some() { arc.center().to_vec() } else { arc.middle().to_vec() }
+}
 
 /// What was asked.
 pub fn intent(intent: &Intent) -> String {
@@ -21,13 +35,14 @@ pub fn intent(intent: &Intent) -> String {
             Curve::Arc(arc) => {
                 let _ = writeln!(
                     text,
-                    "arc {:?} {:?} from {} to {} about {:?} radius {}",
-                    arc.plane(),
+                    "arc {} {:?} from {} to {} about {:?} radius {}{}",
+                    plane(arc),
                     arc.sense(),
                     position(&axes, &arc.start()),
                     position(&axes, &arc.end()),
-                    arc.center(),
-                    arc.radius()
+                    center(arc),
+                    arc.radius(),
+                    if arc.turns() <= 1.0 { String::new() } else { format!(" turns {}", arc.turns()) }
                 );
             }
             Curve::Through(kind, line) => points(text, &axes, &format!("through {kind:?}"), line),
@@ -110,19 +125,20 @@ pub fn decimals(decimals: &Decimals) -> String {
                 }
             }
             Written::Arc(arc) => {
-                let [u, v, _] = arc.plane.axes();
-                let about = |center: [i64; 2]| {
-                    let center = [(center[0], u), (center[1], v)]
-                        .map(|(units, i)| crate::decimal::units_to_f64(units, decimals.digits[i]));
-                    format!("about {center:?}")
-                };
-                let by = match arc.by {
-                    ArcBy::Center(center) => about(center),
-                    ArcBy::Way(place) => format!("by {}", at(&place)),
-                    ArcBy::Turn(center, degrees) => format!("{} by {degrees} degrees", about(center)),
+                let kind = |circle: Circle| format!("{:?} {:?} ", circle.plane, circle.sense);
+                let about = |circle: Circle| format!("about {:?}", circle.place(&decimals.digits));
+                let (kind, by) = match arc.by {
+                    ArcBy::Center(circle, 0) => (kind(circle), about(circle)),
+                    ArcBy::Center(circle, turns) => {
+                        (kind(circle), format!("{} after {turns} turns", about(circle)))
+                    }
+                    ArcBy::Way(place) => (String::new(), format!("by {}", at(&place))),
+                    ArcBy::Turn(circle, degrees) => {
+                        (kind(circle), format!("{} by {degrees} degrees", about(circle)))
+                    }
                 };
                 let (from, to) = (at(&arc.start), at(&arc.end));
-                let _ = writeln!(text, "arc {:?} {:?} from {from} to {to} {by}", arc.plane, arc.sense);
+                let _ = writeln!(text, "arc {kind}from {from} to {to} {by}");
             }
             Written::Polynomial(polynomial) => {
                 let _ = writeln!(text, "polynomial from {}", at(&polynomial.start));

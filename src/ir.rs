@@ -12,12 +12,13 @@
 
 mod arc;
 
-pub use arc::{ArcBy, WrittenArc, sweep, through, turned_end};
+pub use arc::{ArcBy, Circle, WrittenArc, sweep, turned_end};
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
 use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Bound;
 use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
@@ -220,8 +221,9 @@ pub struct Intent {
     pub name_span: Option<Span>,
     /// The radius at which rotary axes count, mm, where the input states one.
     pub radius: Option<f64>,
-    /// How far the tool's direction in tilted planes is from the one asked for, radians: what rounding their angles cost.
-    pub tilt_error: f64,
+    /// What rounding the angles of tilted planes cost: how far the tool's direction is from the one asked for, radians, and an
+    /// arc that is square to it from the arc asked for, mm.
+    pub tilt_error: Bound,
     /// What to know about it.
     pub warnings: Diagnostics,
 }

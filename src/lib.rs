@@ -29,6 +29,7 @@
 //! | [`pass`] | from what was asked to what one machine takes |
 //! | [`dialect`] | how controls spell it, and reading it back |
 //! | [`verify`] | the proof |
+//! | [`diff`] | two programs beside each other |
 //! | [`map`] | which lines of the input each block came from |
 //! | [`points`] | the table of interpolated points |
 //! | [`simulate`] | the path as a control would run it |
@@ -38,6 +39,7 @@
 pub mod decimal;
 pub mod diagnostic;
 pub mod dialect;
+pub mod diff;
 pub mod dump;
 pub mod front;
 pub mod geom;
@@ -140,7 +142,9 @@ pub fn recompile(
     machine: &Machine,
     options: &Options,
 ) -> Result<Output, Failure> {
-    compile_intent(translate::parse(sources, from)?, machine, options)
+    let mut intent = translate::parse(sources, from)?;
+    intent.warnings.extend(translate::turns_otherwise(&intent, from, machine));
+    compile_intent(intent, machine, options)
 }
 
 fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {

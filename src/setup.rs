@@ -231,21 +231,45 @@ fn zero(intent: &Intent) -> Option<String> {
     Some(format!("{x} WHERE THE DIAMETER IS D1 {d1}, {y} {z} CONTACT THERE, {a} THE CUTTER'S INDEX"))
 }
 
+/// All that a proof may not cover.
+const NOT_COVERED: [&str; 5] = [
+    "the control's smoothing and compressor",
+    "the wheel's radius and profile",
+    "where the rotary axes go and what they meet there",
+    "that the tool turns between blocks as the machine file says",
+    "how far the machine's own axes go in tilted planes",
+];
+
 /// What the proof does not cover.
 fn not_covered(intent: &Intent) -> Vec<String> {
-    let mut all = vec!["the control's smoothing and compressor".to_owned()];
-    if intent.logarithmic().next().is_some() {
-        all.push("the wheel's radius and profile".to_owned());
+    let [smoothing, wheel, rotary, turning, axes] = NOT_COVERED;
+    let (led, tilted) = (intent.program.axes.direction().is_some(), intent.program.has_planes());
+    let all = [
+        (smoothing, true),
+        (wheel, intent.logarithmic().next().is_some()),
+        (rotary, led || tilted),
+        (turning, led),
+        (axes, tilted),
+    ];
+    all.into_iter().filter(|(_, holds)| *holds).map(|(what, _)| what.to_owned()).collect()
+}
+
+/// The remarks before the first step that do not say what to set up: those behind the last of these, which may go on for some
+/// lines.
+pub fn own_remarks(remarks: &[String]) -> &[String] {
+    let Some(last) = remarks.iter().rposition(|remark| remark.starts_with(LAST_REMARK)) else {
+        return remarks;
+    };
+    let mut text = String::new();
+    for (i, remark) in remarks[last..].iter().enumerate() {
+        text.push(' ');
+        text.push_str(remark);
+        let said = text.trim_start().strip_prefix(LAST_REMARK).unwrap_or_default().trim_start();
+        if said.split(", ").all(|part| NOT_COVERED.iter().any(|known| known.eq_ignore_ascii_case(part))) {
+            return &remarks[last + i + 1..];
+        }
     }
-    if intent.program.axes.direction().is_some() {
-        all.push("where the rotary axes go and what they meet there".to_owned());
-        all.push("that the tool turns between blocks as the machine file says".to_owned());
-    }
-    if intent.program.has_planes() {
-        all.push("where the rotary axes go and what they meet there".to_owned());
-        all.push("how far the machine's own axes go in tilted planes".to_owned());
-    }
-    all
+    &remarks[last + 1..]
 }
 
 /// Where rapids are clear: the first rapid's axis and place.

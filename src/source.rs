@@ -12,6 +12,12 @@ impl SourceId {
     pub const PROGRAM: SourceId = SourceId(u32::MAX);
     /// The input: the first text.
     pub const INPUT: SourceId = SourceId(0);
+
+    /// The same text where `count` others stand before its own.
+    #[must_use]
+    pub fn behind(self, count: usize) -> SourceId {
+        if self == SourceId::PROGRAM { self } else { SourceId(self.0.saturating_add(count as u32)) }
+    }
 }
 
 /// A range of bytes in one text.
@@ -90,6 +96,19 @@ impl Sources {
     /// The input alone.
     pub fn new(input: Source) -> Sources {
         Sources { files: vec![input], ..Sources::default() }
+    }
+
+    /// How many texts there are beside the program.
+    pub fn count(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The texts of both, those of `other` behind: their ids count on ([`SourceId::behind`]). The names that the inputs have
+    /// for files are left out.
+    #[must_use]
+    pub fn joined(mut self, other: Sources) -> Sources {
+        self.files.extend(other.files);
+        Sources { files: self.files, ..Sources::default() }
     }
 
     /// Adds a text.

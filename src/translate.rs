@@ -12,31 +12,40 @@
 //! | the lines and remarks round the program | nothing: they are the other machine's affair |
 //!
 //! Axes that the program never moves are left out, X, Y and Z excepted. F is taken as the speed along the linear axes; where
-//! the machine counts rotary axes in it, a program that turns one is refused. So is one that leads the tool's tip: its reader
-//! needs the input to know the tool's direction.
+//! the machine counts rotary axes in it, a program that turns one is refused. A program that leads the tool's tip has its lines
+//! for it, so that nothing is added on the way to safe height and back.
+
+mod planes;
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
+use crate::dialect::frame::with_named_axes;
 use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Bound;
 use crate::ir::{
-    Auxiliary, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
+    ArcBy, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
 };
 use crate::machine::{Machine, RotaryFeed};
-use crate::setup::LAST_REMARK;
+use crate::setup::own_remarks;
 use crate::source::{SourceId, Span};
 use crate::units::{Axes, Axis, Kind, MAX_AXES, Position};
 use crate::verify::{to_arc, to_nurbs};
 
-/// What a program for `machine` asks for.
+/// The machine as a program for it wants it: with the axes that its header names, and with a direction of the tool where it
+/// leads the tip.
+pub fn machine_of(text: &str, machine: &Machine) -> Machine {
+    let machine = machine.clone().for_program(text);
+    with_named_axes(text, &machine).unwrap_or(machine)
+}
+
+/// Whether a program is whole; what to know of one that is.
 ///
 /// # Errors
-/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
-/// parameters.
-pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
-    let Warned { value: reading, mut warnings } = reading;
-    let decimals = &reading.decimals;
-    let steps = &decimals.program.steps;
+/// It has no move, or no end.
+pub fn is_whole(reading: &Reading, machine: &Machine) -> Result<Diagnostics, Diagnostics> {
+    let mut warnings = Diagnostics::new();
+    let steps = &reading.decimals.program.steps;
     if !reading.header {
         let message = format!("the program does not start with the lines of machine `{}`", machine.name);
         warnings.push(
@@ -55,8 +64,23 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
             .hint("it may have been cut off")
             .into());
     }
-    let used = used_axes(decimals);
-    let kept: Vec<usize> = (0..decimals.program.axes.count()).filter(|i| used[*i]).collect();
+    Ok(warnings)
+}
+
+/// What a program for `machine` asks for.
+///
+/// # Errors
+/// It has no move or no end, turns an axis at a feed that cannot be told, has a spline that is none, or an operator's
+/// parameters.
+pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Diagnostics> {
+    let Warned { value: reading, mut warnings } = reading;
+    let decimals = &reading.decimals;
+    let steps = &decimals.program.steps;
+    warnings.extend(is_whole(&reading, machine)?);
+    let own = decimals.program.axes;
+    let moved = moved_axes(decimals);
+    let space = |i: &usize| ["X", "Y", "Z"].contains(&own.name(*i).as_str());
+    let kept: Vec<usize> = (0..own.count()).filter(|i| moved.contains(i) || space(i)).collect();
     let own: Vec<(Axis, Kind)> =
         kept.iter().map(|i| (decimals.program.axes.name(*i), decimals.program.axes.kind(*i))).collect();
     let Some(axes) = Axes::new(&own) else {
@@ -67,6 +91,7 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
     if let Some(first) = steps.first() {
         asked.extend(
             own_remarks(&decimals.setup)
+                .iter()
                 .map(|remark| Located { step: Step::Comment(remark.clone()), span: first.span }),
         );
     }
@@ -76,21 +101,15 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
         }
     }
     let Program { name, number, .. } = &decimals.program;
-    let program = Program { name: name.clone(), number: *number, axes, steps: asked };
-    Ok(Intent { program, tolerance: None, name_span: None, radius: None, tilt_error: 0.0, warnings })
+    let mut program = Program { name: name.clone(), number: *number, axes, steps: asked };
+    planes::count_back(&mut program, machine.orientation.plane_order)?;
+    Ok(Intent { program, tolerance: None, name_span: None, radius: None, tilt_error: Bound::ZERO, warnings })
 }
 
-/// The remarks before the first step that are not about setting up: those behind the last of these.
-fn own_remarks(remarks: &[String]) -> impl Iterator<Item = &String> {
-    let last = remarks.iter().rposition(|remark| remark.starts_with(LAST_REMARK));
-    remarks[last.map_or(0, |last| last + 1)..].iter()
-}
-
-/// Which axes a program moves; X, Y and Z count as moved.
-fn used_axes(decimals: &Decimals) -> [bool; MAX_AXES] {
+/// Which axes a program moves, in order; where it leads the tip of the tool, all of them.
+pub fn moved_axes(decimals: &Decimals) -> Vec<usize> {
     let axes = decimals.program.axes;
-    let mut used: [bool; MAX_AXES] =
-        std::array::from_fn(|i| i < axes.count() && ["X", "Y", "Z"].contains(&axes.name(i).as_str()));
+    let mut used = [axes.direction().is_some(); MAX_AXES];
     for located in &decimals.program.steps {
         match &located.step {
             Step::Rapid(targets) => targets.iter().for_each(|(axis, _)| used[*axis] = true),
@@ -107,11 +126,11 @@ fn used_axes(decimals: &Decimals) -> [bool; MAX_AXES] {
             | Step::Auxiliary(_) => {}
         }
     }
-    used
+    (0..axes.count()).filter(|i| used[*i]).collect()
 }
 
 /// Which axes a path moves.
-fn moved(written: &Written) -> [bool; MAX_AXES] {
+pub(crate) fn moved(written: &Written) -> [bool; MAX_AXES] {
     let mut moves = [false; MAX_AXES];
     let mut see = |start: &[i64; MAX_AXES], other: &[i64; MAX_AXES]| {
         (0..MAX_AXES).for_each(|i| moves[i] |= start[i] != other[i]);
@@ -127,8 +146,11 @@ fn moved(written: &Written) -> [bool; MAX_AXES] {
         }
         Written::Arc(arc) => {
             see(&arc.start, &arc.end);
-            for i in &arc.plane.axes()[..2] {
-                moves[*i] = true;
+            match arc.by {
+                ArcBy::Way(way) => see(&arc.start, &way),
+                ArcBy::Center(circle, _) | ArcBy::Turn(circle, _) => {
+                    circle.plane.axes()[..2].iter().for_each(|i| moves[*i] = true);
+                }
             }
         }
         Written::Polynomial(polynomial) => {
@@ -178,10 +200,6 @@ impl Translation<'_> {
                 return Ok(None);
             }
             Step::Auxiliary(auxiliary) => {
-                if let Auxiliary::Plane(_) | Auxiliary::PlaneEnd = auxiliary {
-                    let message = "programs with tilted planes are not translated";
-                    return Err(Diagnostic::error("plane-translated", message).at(located.span, "").into());
-                }
                 let number = |x: Decimal| Some(x.to_f64());
                 return Ok(auxiliary.try_map(number, number).map(Step::Auxiliary));
             }
@@ -256,11 +274,29 @@ impl Translation<'_> {
     }
 }
 
+/// The warning where the other machine turns the tool between two directions in another way: the ends of blocks are the
+/// same then, and what is between is not.
+pub fn turns_otherwise(intent: &Intent, from: &Machine, to: &Machine) -> Diagnostics {
+    let mut warnings = Diagnostics::new();
+    if intent.program.axes.direction().is_some() && from.orientation.turn != to.orientation.turn {
+        let message = format!(
+            "machines `{}` and `{}` turn the tool between two directions in different ways: only the directions at the ends of straight blocks are the same",
+            from.name, to.name
+        );
+        warnings.push(
+            Diagnostic::warning("turn-differs", message)
+                .hint("`diff` of both programs says how far they are apart; [orientation] turn says how a machine turns"),
+        );
+    }
+    warnings
+}
+
 /// Reads the input as a program for `machine`.
 ///
 /// # Errors
 /// The machine cannot read it, or see [`intent`].
 pub fn parse(sources: &crate::source::Sources, machine: &Machine) -> Result<Intent, Diagnostics> {
     let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
-    intent((machine.dialect.read)(text, SourceId::INPUT, machine)?, machine)
+    let machine = machine_of(text, machine);
+    intent((machine.dialect.read)(text, SourceId::INPUT, &machine)?, &machine)
 }

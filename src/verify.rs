@@ -8,7 +8,7 @@
 //! | odd-even steps | lines | point by point, φ the identity on each segment | proved |
 //! | odd-even steps | polynomial blocks, B-splines | piece by piece along its segment, φ the projection | proved |
 //! | logarithmic curve | lines, polynomial blocks, B-splines | at equal X, φ = X | proved |
-//! | an arc | an arc, or lines | by its implicit form, φ the angle | proved |
+//! | an arc | arcs, or lines | by its implicit form or its three places, φ the angle | proved |
 //! | either | the control's own spline through points | the points only | points-only |
 //! | lines | lines | point by point | proved |
 //! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
@@ -26,7 +26,7 @@ mod logarithmic;
 mod report;
 mod splined;
 
-pub use arcs::to_arc;
+pub use arcs::{spelled_auxiliary, to_arc};
 
 use crate::decimal::{Decimal, Origin, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -65,7 +65,7 @@ pub fn verify(
 ) -> Result<Report, Diagnostics> {
     let decimals = &reading.decimals;
     let mut report = Report {
-        deviation: Bound { rad: intent.tilt_error, ..Bound::ZERO },
+        deviation: Bound { rad: intent.tilt_error.rad, ..Bound::ZERO },
         status: Status::Proved,
         from_ideal: None,
         map: None,
@@ -170,6 +170,9 @@ pub fn verify(
                 let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
                 // The path before ends that far from where this one starts; a turn takes it along.
                 found.deviation.mm += gap;
+                if let Curve::Arc(_) = curve {
+                    found.deviation.mm += intent.tilt_error.mm;
+                }
                 if cursor.gap != 0.0 {
                     cursor.gap += gap;
                 }
@@ -436,7 +439,7 @@ impl<'p> Cursor<'p> {
         };
         match (curve, &cut.curve) {
             (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written).map(timed),
-            (Curve::Arc(arc), written) => self.arc(arc, written).map(timed),
+            (Curve::Arc(arc), _) => self.arc(arc, tolerance).map(timed),
             (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),
             (Curve::Formula(described), written) => {
                 let (machine, radius) = (self.machine, self.radius);

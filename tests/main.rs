@@ -9,6 +9,7 @@
 //! | `paper` | the table of the paper, row by row |
 //! | `roundtrip` | what is written reads back to the same text |
 //! | `robust` | nothing panics |
+//! | `diff` | two programs beside each other, and every change found where it is |
 //! | `damage` | a program changed in any word is refused |
 //! | `grammar` | `grammar/*.ebnf` in step with readers, writers and keys |
 //! | `oracle` | programs evaluated from their text alone, by the manuals' formulas |
@@ -26,6 +27,7 @@
 mod apt;
 mod cli;
 mod damage;
+mod diff;
 mod errors;
 mod exact;
 mod files;

@@ -3,6 +3,7 @@
 use crate::support::folder;
 use splinepost::machine::Machine;
 use splinepost::plot::deviation::deviation;
+use splinepost::simulate::partition::Parametric;
 use splinepost::simulate::track::{Setting, Track};
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::{Options, compile, front};
@@ -118,6 +119,40 @@ fn the_deviation_drawn_is_within_what_is_proved() {
     }
 }
 
+/// A program of tilted planes is drawn where its input is: in the coordinates of the work.
+#[test]
+fn tilted_planes_are_drawn_in_the_work() {
+    let text = std::fs::read_to_string(folder("fixtures/apt/nx-planes/input.cls")).expect("the input");
+    let sources = Sources::new(Source::new("input.cls", text));
+    let language = front::find("apt").expect("CL data");
+    for name in ["sinumerik", "heidenhain", "mazak"] {
+        let machine = Machine::built_in(name).expect("a machine");
+        let output = compile(&sources, language, &machine, &Options::default())
+            .unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics));
+        let machine = machine.with_axes(&output.intent.program.axes).expect("its axes");
+        let reading = (machine.dialect.read)(&output.text, SourceId::PROGRAM, &machine)
+            .unwrap_or_else(|e| panic!("{e:?}"));
+        let setting = Setting { machine: Some(&machine), tolerance: 0.001, ..Setting::default() };
+        let program = Track::of_decimals(&reading.value.decimals, &setting).expect("a track");
+        let asked = Track::of_program(&output.intent.program, &setting).expect("a track");
+        let drawn = deviation(&program, &asked, None).expect("the same runs");
+        let most = drawn.iter().map(|p| p[1]).fold(0.0, f64::max);
+        // Half a unit of the fourth decimal in each axis, which moves the centre of an arc as well.
+        assert!(most < 2.0e-4, "{name}: {most:e}");
+        let read = (language.parse)(&sources).expect("an intent");
+        let asked = Track::of_program(&read.program, &setting).expect("a track");
+        assert_eq!(program.pieces.len(), asked.pieces.len());
+        for (own, asked) in program.pieces.iter().zip(&asked.pieces) {
+            for (p, q) in [
+                (own.curve.at(own.from), asked.curve.at(asked.from)),
+                (own.curve.at(own.to), asked.curve.at(asked.to)),
+            ] {
+                assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1.0e-4), "{name}: {p:?} {q:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_drawn_is_told() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -170,7 +205,7 @@ fn pages_open_in_chromium_without_errors() {
         ("job", &["fixtures/compile/lissajous/input.toml", "--to", "heidenhain"], without(&flute)),
         (
             "cl-data",
-            &["fixtures/apt/nx-contour/input.cls"],
+            &["fixtures/apt/nx-planes/input.cls"],
             without(&[&flute[..], &rotary, &["deviation"]].concat()),
         ),
     ];

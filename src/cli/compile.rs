@@ -122,7 +122,7 @@ impl Compile {
 }
 
 /// Whether a name is that of a built-in machine, or of a file.
-fn is_machine(name: &str) -> bool {
+pub(super) fn is_machine(name: &str) -> bool {
     Machine::built_in(name).is_some() || std::path::Path::new(name).is_file()
 }
 

@@ -3,6 +3,7 @@
 mod check;
 mod compile;
 mod completions;
+mod diff;
 mod dump;
 mod interpolate;
 mod io;
@@ -49,6 +50,7 @@ enum Command {
     Compile(compile::Compile),
     Interpolate(interpolate::Interpolate),
     Verify(verify::Verify),
+    Diff(diff::Diff),
     Simulate(simulate::Simulate),
     Plot(plot::Plot),
     Check(check::Check),
@@ -88,6 +90,11 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Compile(command) => command.run(&console, &mut sources),
         Command::Interpolate(command) => command.run(&console, &mut sources),
         Command::Verify(command) => command.run(&console, &mut sources),
+        Command::Diff(command) => match command.run(&console, &mut sources) {
+            Ok(true) => Ok(()),
+            Ok(false) => return ExitCode::from(1),
+            Err(diagnostics) => Err(diagnostics),
+        },
         Command::Simulate(command) => command.run(&console, &mut sources),
         Command::Plot(command) => command.run(&console, &mut sources),
         Command::Check(command) => command.run(&console, &mut sources),

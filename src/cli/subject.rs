@@ -4,11 +4,11 @@ use super::compile::Reading as CommandReading;
 use super::{io, machine};
 use splinepost::diagnostic::{Diagnostic, Diagnostics, Warned};
 use splinepost::dialect::Reading;
-use splinepost::dialect::frame::with_named_axes;
 use splinepost::front::Language;
 use splinepost::ir::Intent;
 use splinepost::machine::Machine;
 use splinepost::source::{SourceId, Sources};
+use splinepost::translate;
 
 /// A file, and how to read it.
 #[derive(clap::Args, Debug)]
@@ -39,8 +39,7 @@ impl Subject {
         if let Some(to) = self.machine_of_program(sources)?.map(ToOwned::to_owned) {
             let machine = machine(&to, sources)?;
             let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
-            let machine = machine.for_program(text);
-            let machine = with_named_axes(text, &machine).unwrap_or(machine);
+            let machine = translate::machine_of(text, &machine);
             let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
             return Ok(Understood::Program(Box::new(machine), reading));
         }

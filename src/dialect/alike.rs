@@ -1,7 +1,7 @@
 //! Whether two bodies are the same but for where their axes count from, so that one text serves both.
 
 use crate::decimal::Decimal;
-use crate::ir::{ArcBy, Located, Shift, Step, Units, Written, WrittenPoints};
+use crate::ir::{ArcBy, Circle, Located, Shift, Step, Units, Written, WrittenPoints};
 use crate::units::MAX_AXES;
 
 type Read = Step<Decimal, Written>;
@@ -75,16 +75,18 @@ impl By {
                     && a.points.iter().zip(&b.points).all(|(a, b)| self.units(a, b))
             }
             (Written::Arc(a), Written::Arc(b)) => {
-                let [u, v, _] = a.plane.axes();
-                let center = |a: [i64; 2], b: [i64; 2]| [a[0] + self.by[u], a[1] + self.by[v]] == b;
-                (a.plane, a.sense) == (b.plane, b.sense)
-                    && self.units(&a.start, &b.start)
+                let circle = |a: Circle, b: Circle| {
+                    let [u, v, _] = a.plane.axes();
+                    (a.plane, a.sense) == (b.plane, b.sense)
+                        && [a.center[0] + self.by[u], a.center[1] + self.by[v]] == b.center
+                };
+                self.units(&a.start, &b.start)
                     && self.units(&a.end, &b.end)
                     && match (a.by, b.by) {
-                        (ArcBy::Center(a), ArcBy::Center(b)) => center(a, b),
+                        (ArcBy::Center(a, turns), ArcBy::Center(b, other)) => circle(a, b) && turns == other,
                         (ArcBy::Way(a), ArcBy::Way(b)) => self.units(&a, &b),
-                        (ArcBy::Turn(a, by), ArcBy::Turn(b, other)) => center(a, b) && by == other,
-                        (ArcBy::Center(_) | ArcBy::Way(_) | ArcBy::Turn(..), _) => false,
+                        (ArcBy::Turn(a, by), ArcBy::Turn(b, other)) => circle(a, b) && by == other,
+                        (ArcBy::Center(..) | ArcBy::Way(_) | ArcBy::Turn(..), _) => false,
                     }
             }
             (

@@ -4,16 +4,17 @@
 //! G2 X10 Y0 I5 J0          from (0, 0) to (10, 0) about (5, 0), clockwise seen against Z
 //! G3 X0 Y0 Z-1 I5 J0       a whole turn of a helix where it ends over its start
 //! G18 G2 X10 Z0 I5 K0      in another plane: seen against Y
+//! G3 X5 Y5 Z-9 I5 J0 TURN=2    two whole turns before the way to the end, on controls that have the word
 //! ```
 //!
-//! I J K are never modal.
+//! I J K and TURN are never modal.
 
 use super::assemble::Assembler;
 use super::modal::Modal;
 use crate::decimal::{Decimal, Spelling, write_units};
 use crate::diagnostic::Diagnostic;
 use crate::geom::arc::{Plane, Sense};
-use crate::ir::{ArcBy, Units, Written, WrittenArc};
+use crate::ir::{ArcBy, Circle, Units, Written, WrittenArc};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::Axis;
@@ -47,10 +48,10 @@ pub fn counted_sense(machine: &Machine, plane: Plane, sense: Sense) -> Sense {
     if reversed[u] == reversed[v] { sense } else { sense.reversed() }
 }
 
-/// The centre of an arc, where the block states it as a place.
-pub fn stated_center(arc: &WrittenArc) -> Option<[i64; 2]> {
+/// The circle of an arc, where the block states it by its end, and how many whole turns it makes before.
+pub fn stated_circle(arc: &WrittenArc) -> Option<(Circle, u32)> {
     match arc.by {
-        ArcBy::Center(center) => Some(center),
+        ArcBy::Center(circle, turns) => Some((circle, turns)),
         ArcBy::Way(_) | ArcBy::Turn(..) => None,
     }
 }
@@ -58,20 +59,21 @@ pub fn stated_center(arc: &WrittenArc) -> Option<[i64; 2]> {
 /// Writes an arc about a centre as one block. `plane` is the one in force; another is chosen in the block.
 pub fn write(
     modal: &mut Modal<'_>,
-    (arc, center): (&WrittenArc, [i64; 2]),
+    arc: &WrittenArc,
+    (circle, turns): (Circle, u32),
     feed: Option<Decimal>,
     plane: &mut Option<Plane>,
 ) {
-    let [u, v, w] = arc.plane.axes();
+    let [u, v, w] = circle.plane.axes();
     modal.begin("N");
-    if *plane != Some(arc.plane) {
-        modal.text(plane_word(arc.plane));
+    if *plane != Some(circle.plane) {
+        modal.text(plane_word(circle.plane));
         modal.gap();
-        *plane = Some(arc.plane);
+        *plane = Some(circle.plane);
     }
-    modal.motion(motion_word(counted_sense(modal.machine, arc.plane, arc.sense)));
+    modal.motion(motion_word(counted_sense(modal.machine, circle.plane, circle.sense)));
     modal.inverse(false);
-    let axes = modal.machine.axes.count();
+    let axes = modal.direction.unwrap_or(modal.machine.axes.count());
     let digits = modal.machine.axis_digits();
     for i in 0..axes {
         let in_plane = i == u || i == v;
@@ -81,8 +83,8 @@ pub fn write(
     }
     for i in 0..3 {
         let center = match i {
-            _ if i == u => center[0],
-            _ if i == v => center[1],
+            _ if i == u => circle.center[0],
+            _ if i == v => circle.center[1],
             _ => continue,
         };
         modal.out.push(CENTER[i]);
@@ -92,6 +94,12 @@ pub fn write(
         write_units(&mut modal.out, offset, digits[i], spelling);
         modal.gap();
     }
+    if turns != 0 {
+        modal.text("TURN=");
+        modal.text(itoa::Buffer::new().format(turns));
+        modal.gap();
+    }
+    modal.directions(&arc.end);
     modal.feed(feed);
     modal.reached(&arc.end);
     modal.end();
@@ -107,6 +115,8 @@ pub struct Said<'b> {
     pub named: &'b [(usize, i64)],
     /// I J K.
     pub offsets: [Option<Decimal>; 3],
+    /// TURN.
+    pub turns: u32,
     /// The line of the text.
     pub line: u32,
     /// The block.
@@ -147,8 +157,12 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
         }
     }
     let sense = counted_sense(assembler.machine, said.plane, said.sense);
-    let by = ArcBy::Center(center);
-    let arc = WrittenArc { plane: said.plane, sense, start, end, by, line: said.line };
+    if said.turns != 0 && start[u] == end[u] && start[v] == end[v] {
+        let message = "whether TURN counts the turn of an arc that ends over its start no page says";
+        return assembler.error("arc-turns", message, range());
+    }
+    let by = ArcBy::Center(Circle { plane: said.plane, sense, center }, said.turns);
+    let arc = WrittenArc { start, end, by, line: said.line };
     add(assembler, arc, &end, said.span);
 }
 

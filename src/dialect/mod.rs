@@ -54,8 +54,8 @@ pub struct Dialect {
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
     pub round: Round,
-    /// What it has for an arc in this plane, or for one that leaves the plane as a helix; where it has nothing, lines.
-    pub arc: fn(Plane, bool) -> Option<ArcWord>,
+    /// What its arcs take.
+    pub arcs: Arcs,
     /// The words of the three components of the tool's direction.
     pub direction: [&'static str; 3],
     /// The words of how the tool turns between two directions, in their plane or with the rotary axes evenly, where it has some.
@@ -142,10 +142,34 @@ pub struct NurbsRules {
     pub starts_with_one: bool,
 }
 
+/// What the arcs of a dialect take.
+#[derive(Clone, Copy)]
+pub struct Arcs {
+    /// What it has for an arc of a kind on a machine; where it has nothing, lines.
+    pub word: fn(ArcKind, &Machine) -> Option<ArcWord>,
+    /// The most whole turns of one block.
+    pub most_turns: u32,
+    /// Whether it has words that choose the plane of an arc.
+    pub planes: bool,
+    /// Whether an arc can stand beside the words of the tool's direction.
+    pub directed: bool,
+}
+
+/// What matters of an arc to the words that a control has for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArcKind {
+    /// The plane of the machine that it lies in or goes along, where there is one.
+    pub plane: Option<Plane>,
+    /// Whether it leaves its plane as a helix.
+    pub helix: bool,
+    /// Whether it is more than a whole turn.
+    pub turns: bool,
+}
+
 /// What a block says about an arc beside its end; see [`ArcBy`](crate::ir::ArcBy).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcWord {
-    /// Its centre.
+    /// Its centre, and whole turns before the way to its end.
     Center,
     /// A place on the way. A whole turn becomes two halves.
     Way,

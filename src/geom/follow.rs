@@ -35,11 +35,17 @@
 //! Every bound is raised by 256 ε (ε = 2.2e-16) of the greatest coordinate: a piece is cut by at most some thirty de
 //! Casteljau steps, each within ε/2 of no greater a number, and the products round some 60 times more.
 
+mod along;
+mod stream;
+
+pub use stream::{Meeting, Rule, Stream};
+
 use super::bernstein::{Bernstein, MAX_DEGREE};
 use super::bezier::Bezier;
 use super::deviation::OrderError;
 use super::direction;
 use crate::units::{MAX_AXES, Position};
+use along::{Stand, together};
 use std::borrow::Cow;
 
 /// Allowance for rounding, relative to the greatest coordinate.
@@ -413,68 +419,25 @@ fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
     }
 }
 
-/// One of the two paths, and how far it has been run.
+/// One of the two paths, and where it has been run to.
 struct Runner<'a> {
-    pieces: &'a [Bezier],
-    at: usize,
-    t: f64,
-    /// Lengths of the piece up to t = k/[`PLACES`].
-    lengths: [f64; PLACES + 1],
+    rest: std::slice::Iter<'a, Bezier>,
+    stand: Option<Stand>,
 }
 
 impl<'a> Runner<'a> {
     fn new(pieces: &'a [Bezier]) -> Runner<'a> {
-        let mut runner = Runner { pieces, at: 0, t: 0.0, lengths: [0.0; PLACES + 1] };
-        runner.measure();
-        runner
-    }
-
-    fn piece(&self) -> Option<&'a Bezier> {
-        self.pieces.get(self.at)
-    }
-
-    fn measure(&mut self) {
-        let Some(piece) = self.piece() else { return };
-        let mut last = piece.start();
-        for k in 1..=PLACES {
-            let next = if k == PLACES { piece.end() } else { piece.eval(k as f64 / PLACES as f64) };
-            self.lengths[k] = self.lengths[k - 1] + distance(&last, &next);
-            last = next;
-        }
-    }
-
-    /// The length up to t.
-    fn length(&self, t: f64) -> f64 {
-        let x = t * PLACES as f64;
-        let k = (x as usize).min(PLACES - 1);
-        self.lengths[k] + (x - k as f64) * (self.lengths[k + 1] - self.lengths[k])
-    }
-
-    /// What is left of the piece.
-    fn rest(&self) -> f64 {
-        self.lengths[PLACES] - self.length(self.t)
-    }
-
-    /// Where the piece will be `more` farther on.
-    fn ahead(&self, more: f64) -> f64 {
-        let wanted = self.length(self.t) + more;
-        let k = self.lengths[1..].partition_point(|s| *s < wanted);
-        if PLACES <= k {
-            return 1.0;
-        }
-        let step = self.lengths[k + 1] - self.lengths[k];
-        let share = if 0.0 < step { (wanted - self.lengths[k]) / step } else { 0.0 };
-        (k as f64 + share) / PLACES as f64
+        let mut rest = pieces.iter();
+        Runner { stand: rest.next().map(Stand::new), rest }
     }
 
     /// Takes the part up to `t`; at 1 the next piece begins.
     fn take(&mut self, t: f64) -> Option<Bezier> {
-        let part = self.piece()?.segment(self.t, t);
-        self.t = t;
+        let stand = self.stand.as_mut()?;
+        let part = stand.part(t);
+        stand.t = t;
         if t == 1.0 {
-            self.at += 1;
-            self.t = 0.0;
-            self.measure();
+            self.stand = self.rest.next().map(Stand::new);
         }
         Some(part)
     }
@@ -483,9 +446,8 @@ impl<'a> Runner<'a> {
 /// Runs along both and bounds every interval.
 fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
     let (mut p, mut c) = (Runner::new(path), Runner::new(curve));
-    let close = 1.0e-3 * bounds.tolerance;
     loop {
-        let (to_p, to_c) = match (p.piece(), c.piece()) {
+        let (to_p, to_c) = match (&p.stand, &c.stand) {
             (None, None) => return,
             // One has ended: it waits where it is for the other.
             (Some(_), None) => {
@@ -502,26 +464,7 @@ fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
                 }
                 continue;
             }
-            (Some(own), Some(other)) => {
-                let (left_p, left_c) = (p.rest(), c.rest());
-                let slack = 4.0 * bounds.tolerance;
-                let mut to_p = 1.0;
-                if left_c <= 1.5 * left_p + slack {
-                    let t = foot(own, &other.end(), p.ahead(left_c), p.t, 1.0);
-                    if close < p.length(1.0) - p.length(t) {
-                        to_p = t;
-                    }
-                }
-                let mut to_c = 1.0;
-                if left_p <= 1.5 * left_c + slack {
-                    let u = foot(other, &own.end(), c.ahead(left_p), c.t, 1.0);
-                    if close < c.length(1.0) - c.length(u) {
-                        to_c = u;
-                    }
-                }
-                // Each joint before the other's: they belong together.
-                if to_p < 1.0 && to_c < 1.0 { (1.0, 1.0) } else { (to_p, to_c) }
-            }
+            (Some(own), Some(other)) => together(own, other, bounds.tolerance),
         };
         if let (Some(part), Some(other)) = (p.take(to_p), c.take(to_c)) {
             interval(&part, &other, bounds);

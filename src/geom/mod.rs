@@ -22,7 +22,8 @@
 //! | [`smooth`] | runs of points to splines, corners kept |
 //! | [`runs`] | such a run beside its spline: distances, curvature, corners |
 //! | [`deviation`] | the proof: upper bounds on the distance of two curves run in order |
-//! | [`follow`] | the same for any two paths of pieces |
+//! | [`follow`] | the same for any two paths of pieces, as a whole or place by place |
+//! | [`round`] | arcs as such pieces |
 
 pub mod arc;
 pub mod bernstein;
@@ -41,6 +42,7 @@ pub mod nurbs;
 pub mod oddeven;
 mod relax;
 pub mod rotation;
+pub mod round;
 pub mod runs;
 pub mod smooth;
 

@@ -153,6 +153,7 @@ impl Reader {
         let feed_parameter = self.or(feed.parameter, base.map(|b| b.feed_parameter), "feed.parameter")?;
         let parameters = self.parameters(&file.parameter.unwrap_or_default(), base.map(|b| b.parameters))?;
         let spline = self.spline(file.spline.unwrap_or_default(), base)?;
+        let arc_planes = self.arc_planes(file.arcs.unwrap_or_default(), dialect, base)?;
         let own = file.orientation.unwrap_or_default();
         let orientation = self.orientation(&own, dialect, base.map(|b| b.orientation))?;
         let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
@@ -180,6 +181,7 @@ impl Reader {
             block_time: block_time.or(base.and_then(|b| b.block_time)),
             parameters,
             spline,
+            arc_planes,
             orientation,
             frame,
         })

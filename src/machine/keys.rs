@@ -72,6 +72,7 @@ pub const KEYS: &[Key] = &[
             Key::value("end"),
         ],
     ),
+    Key::table("arcs", &[Key::value("planes")]),
     Key::table(
         "orientation",
         &[
@@ -80,6 +81,7 @@ pub const KEYS: &[Key] = &[
             Key::value("turn"),
             Key::value("second_curve"),
             Key::value("length"),
+            Key::value("arcs"),
             Key::value("safe_height"),
             Key::value("plane_order"),
         ],
@@ -149,6 +151,8 @@ pub(super) struct File {
     pub(super) parameter: Option<ParameterFile>,
     /// What its splines take.
     pub(super) spline: Option<SplineFile>,
+    /// What arcs take.
+    pub(super) arcs: Option<ArcsFile>,
     /// How the direction of the tool is stated in five axes.
     pub(super) orientation: Option<OrientationFile>,
     /// The lines round a program.
@@ -313,6 +317,15 @@ pub(super) struct SplineFile {
     pub(super) end: Option<Spanned<String>>,
 }
 
+/// What arcs take.
+#[derive(Deserialize, JsonSchema, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsFile {
+    /// Whether arcs may choose another plane than X Y, by G18 and G19: only where the length of the tool stays along Z there.
+    #[schemars(with = "Option<bool>")]
+    pub(super) planes: Option<Spanned<bool>>,
+}
+
 /// How the direction of the tool is stated in five axes, and how the control turns it.
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
@@ -332,6 +345,9 @@ pub(super) struct OrientationFile {
     /// How far that point is from the tip where the input does not say, mm.
     #[schemars(with = "Option<f64>")]
     pub(super) length: Option<Spanned<f64>>,
+    /// Whether arcs are written as arcs while the tip is led, where the tool keeps its direction.
+    #[schemars(with = "Option<bool>")]
+    pub(super) arcs: Option<Spanned<bool>>,
     /// The height of the tip at which the tool may turn before it goes to the work, mm. Without it the greatest Z of the program.
     #[schemars(with = "Option<f64>")]
     pub(super) safe_height: Option<Spanned<f64>>,

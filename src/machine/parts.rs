@@ -43,6 +43,8 @@ pub struct Machine {
     pub parameters: Parameters,
     /// What its splines take.
     pub spline: Spline,
+    /// Whether arcs may choose another plane than X Y, in which the length of the tool stays along Z.
+    pub arc_planes: bool,
     /// How the direction of the tool is stated and turned.
     pub orientation: Orientation,
     /// The lines round a program.
@@ -62,6 +64,8 @@ pub struct Orientation {
     pub second_curve: bool,
     /// How far that point is from the tip where the input does not say, mm.
     pub length: f64,
+    /// Whether arcs are arcs while the tip is led, where the tool keeps its direction.
+    pub arcs: bool,
     /// The height of the tip, mm, at which the tool may turn before it goes to the work; none: the greatest Z of the
     /// program.
     pub safe_height: Option<f64>,

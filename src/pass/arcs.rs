@@ -1,8 +1,63 @@
-//! Arcs that a control has no word for, as lines.
+//! Arcs cut into what one block takes; and those that a control has no word for, as lines.
 
+use crate::dialect::{ArcKind, ArcWord};
 use crate::geom::arc::Arc;
 use crate::geom::elementary;
 use crate::ir::Polyline;
+use crate::machine::Machine;
+
+/// The most that an arc by a place on the way turns, radians: 300 degrees. Its three places are then never nearer to each
+/// other than the radius, or than a half of the arc.
+const MOST_BY_WAY: f64 = 5.0 / 3.0 * std::f64::consts::PI;
+
+/// How near to a whole number of turns, as a share of one, an arc of several ends over its start: the place of its end would
+/// hardly tell a turn from none.
+const OVER: f64 = 0.01;
+
+/// The rise, mm, below which an arc in a plane that is none of the machine's is flat: its axis is a rounded number, so that
+/// it always has some.
+const FLAT: f64 = 0.002;
+
+/// The rise, mm, below which an arc in a plane of the machine is flat: what a turned frame leaves of none.
+const ROUNDED: f64 = 1.0e-9;
+
+/// What kind of arc this is to the words of a control.
+pub fn kind(arc: &Arc) -> ArcKind {
+    let slack = if arc.plane().is_some() { ROUNDED } else { FLAT };
+    ArcKind { plane: arc.plane(), helix: slack < arc.rise().abs(), turns: 1.0 + 1.0e-9 < arc.turns() }
+}
+
+/// The word that a machine has for an arc; none where it becomes lines, among them where the tip of the tool is led and
+/// nothing says that arcs go with that.
+pub fn word(arc: &Arc, machine: &Machine) -> Option<ArcWord> {
+    let led = machine.axes.direction().is_some();
+    (machine.dialect.arcs.word)(kind(arc), machine).filter(|_| !led || machine.orientation.arcs)
+}
+
+/// The arcs that one block each takes.
+pub fn blocks(arc: &Arc, word: ArcWord, machine: &Machine) -> Vec<Arc> {
+    let parts = |n: f64| {
+        let share = |i: u32| f64::from(i) / n;
+        (0..n as u32).map(|i| arc.part(share(i), share(i + 1))).collect()
+    };
+    let most = machine.dialect.arcs.most_turns;
+    match word {
+        ArcWord::Way => parts((arc.sweep().abs() / MOST_BY_WAY - 1.0e-9).ceil().max(1.0)),
+        ArcWord::Turn => arc.by_turns(most),
+        ArcWord::Center if most == 1 => arc.by_turns(1),
+        ArcWord::Center => arc.by_turns(most).into_iter().flat_map(beside_start).collect(),
+    }
+}
+
+/// An arc of several turns that ends over its start leaves its last half to another.
+fn beside_start(arc: Arc) -> Vec<Arc> {
+    let turns = arc.turns();
+    if turns <= 1.0 + OVER || OVER < (turns - turns.round()).abs() {
+        return vec![arc];
+    }
+    let last = 1.0 - 0.5 / turns;
+    vec![arc.part(0.0, last), arc.part(last, 1.0)]
+}
 
 /// The longest chord turns by this, radians: a quarter.
 const LONGEST: f64 = std::f64::consts::FRAC_PI_2;
@@ -64,5 +119,38 @@ mod tests {
             assert!(worst <= bound && bound < 1.6 * tolerance, "{tolerance}: {worst} {bound}");
             assert!(0.2 * tolerance < worst || tolerance == 1.0, "{tolerance}: {worst}");
         }
+    }
+
+    /// What one block takes of an arc of so many turns: by its centre, as a control takes several turns or not, by a place on
+    /// the way, or by an angle.
+    #[test]
+    fn blocks_tell_turns_apart() {
+        let at = |x: f64, y: f64, z: f64| [x, y, z, 0.0, 0.0, 0.0];
+        let turns = |machine: &str, word: ArcWord, turns: f64| {
+            let machine = Machine::built_in(machine).unwrap();
+            let angle = turns.fract() * std::f64::consts::TAU;
+            let end = at(10.0 * elementary::cos(angle), 10.0 * elementary::sin(angle), -turns);
+            let end = if turns.fract() == 0.0 { at(10.0, 0.0, -turns) } else { end };
+            let once =
+                Arc::new(Plane::Xy, Sense::CounterClockwise, at(10.0, 0.0, 0.0), end, [0.0, 0.0]).unwrap();
+            let more = (turns - once.turns()).round() as u32;
+            let parts = blocks(&once.with_turns(more), word, &machine);
+            assert!(parts.windows(2).all(|pair| pair[0].end() == pair[1].start()));
+            parts.iter().map(|part| (part.turns() * 1000.0).round() / 1000.0).collect::<Vec<f64>>()
+        };
+        let (sinumerik, mazak, heidenhain) = ("sinumerik", "mazak", "heidenhain");
+        assert_eq!(turns(sinumerik, ArcWord::Center, 1.0), [1.0]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.25), [2.25]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.0), [1.5, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 2.001), [1.501, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Center, 1000.5), [998.5, 0.5, 1.5]);
+        assert_eq!(turns(mazak, ArcWord::Center, 2.25), [1.0, 1.0, 0.25]);
+        assert_eq!(turns(mazak, ArcWord::Center, 2.0), [1.0, 1.0]);
+        assert_eq!(turns(heidenhain, ArcWord::Turn, 15.0), [15.0]);
+        assert_eq!(turns(heidenhain, ArcWord::Turn, 15.25), [15.0, 0.25]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 0.75), [0.75]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 0.9), [0.45, 0.45]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 1.0), [0.5, 0.5]);
+        assert_eq!(turns(sinumerik, ArcWord::Way, 2.0), [0.667, 0.667, 0.667]);
     }
 }

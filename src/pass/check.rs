@@ -2,9 +2,9 @@
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
-use crate::dialect::{Dialect, Form};
+use crate::dialect::{ArcKind, ArcWord, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Decimals, PolynomialBlock, Step, Units, Written};
+use crate::ir::{ArcBy, Circle, Decimals, PolynomialBlock, Step, Units, Written};
 use crate::machine::Machine;
 use crate::pass::{limits, range};
 use crate::units::{Axis, DEGREES, MAX_AXES, Position};
@@ -48,7 +48,7 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
             );
         }
         let Some(cut) = located.step.cut() else { continue };
-        match form(&decimals, &cut.curve, machine.dialect) {
+        match form(&decimals, &cut.curve, machine) {
             Ok(needed) => coefficient_digits = coefficient_digits.max(needed),
             Err(refused) => found.push(refused.at(located.span, "")),
         }
@@ -111,12 +111,27 @@ const CLOSING_AXES: usize = 5;
 
 /// How many digits the closing coefficients of a curve have, or why the dialect cannot write it: none of its motions
 /// has the form, or a block has no such coefficients.
-fn form(decimals: &Decimals, curve: &Written, dialect: &Dialect) -> Result<usize, Diagnostic> {
+fn form(decimals: &Decimals, curve: &Written, machine: &Machine) -> Result<usize, Diagnostic> {
+    let dialect = machine.dialect;
     let (found, what) = match curve {
         Written::Lines(_) => (dialect.motion_of(Form::Lines), "straight lines"),
         Written::Arc(arc) => {
-            let [.., w] = arc.plane.axes();
-            let taken = (dialect.arc)(arc.plane, arc.start[w] != arc.end[w]).is_some();
+            let taken = match arc.by {
+                ArcBy::Center(Circle { plane, .. }, turns) => {
+                    let [.., w] = plane.axes();
+                    let helix = arc.start[w] != arc.end[w];
+                    (dialect.arcs.word)(ArcKind { plane: Some(plane), helix, turns: turns != 0 }, machine)
+                        .is_some()
+                }
+                ArcBy::Way(_) => {
+                    let flat = ArcKind { plane: None, helix: false, turns: false };
+                    (dialect.arcs.word)(flat, machine) == Some(ArcWord::Way)
+                }
+                ArcBy::Turn(Circle { plane, .. }, _) => {
+                    let helix = ArcKind { plane: Some(plane), helix: true, turns: true };
+                    (dialect.arcs.word)(helix, machine) == Some(ArcWord::Turn)
+                }
+            };
             (dialect.motion_of(Form::Lines).filter(|_| taken), "arcs of this kind")
         }
         Written::Polynomial(_) => {
@@ -209,9 +224,18 @@ pub fn moving(curve: &Written) -> Vec<usize> {
             differ(&line.start, &mut line.units.chunks_exact(line.stride))
         }
         Written::Arc(arc) => {
-            let [u, v, _] = arc.plane.axes();
             let mut moved = differ(&arc.start, &mut [arc.end.as_slice()].into_iter());
-            (moved[u], moved[v]) = (true, true);
+            match arc.by {
+                ArcBy::Center(circle, _) | ArcBy::Turn(circle, _) => {
+                    let [u, v, _] = circle.plane.axes();
+                    (moved[u], moved[v]) = (true, true);
+                }
+                ArcBy::Way(way) => {
+                    for i in 0..3 {
+                        moved[i] |= way[i] != arc.start[i];
+                    }
+                }
+            }
             moved
         }
         Written::Nurbs(nurbs) => {

@@ -2,13 +2,14 @@
 //! [`approximate`](super::approximate) makes of them.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::{ArcWord, Form};
+use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
 use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
 use crate::pass::approximate::{Frame, approximate};
+use crate::pass::arcs;
 use crate::pass::settle::{steps, through_points};
 use crate::pass::stretch::{Stretch, of_curve, rate, stretch_of, stretches};
 use crate::source::Span;
@@ -63,14 +64,13 @@ pub fn interpolate(
                     span: located.span,
                 }));
             }
-            Step::Cut(Cut { feed, role, curve: curve @ Curve::Arc(arc) }) => {
+            Step::Cut(Cut { feed, role, curve: Curve::Arc(arc) }) => {
                 let axes = &intent.program.axes;
-                // What an arc is while the tip is led no page says.
-                let word = (machine.dialect.arc)(arc.plane(), arc.is_helix());
-                let curves = match word.filter(|_| axes.direction().is_none()) {
-                    Some(ArcWord::Way) if arc.is_full() => arc.halves().map(Curve::Arc).to_vec(),
-                    Some(ArcWord::Center | ArcWord::Way | ArcWord::Turn) => vec![curve.clone()],
-                    None => vec![Curve::Lines(super::arcs::lines(arc, axes.count(), tolerance))],
+                let curves = match arcs::word(arc, machine) {
+                    Some(word) => {
+                        arcs::blocks(arc, word, machine).into_iter().map(Curve::Arc).collect::<Vec<Curve>>()
+                    }
+                    None => vec![Curve::Lines(arcs::lines(arc, axes.count(), tolerance))],
                 };
                 steps.extend(curves.into_iter().map(|curve| Located {
                     step: Step::Cut(Cut { feed: *feed, role: *role, curve }),

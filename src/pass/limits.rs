@@ -138,16 +138,20 @@ fn figures(decimals: &Decimals, machine: &Machine, wanted: &[usize]) -> (Figures
             continue;
         }
         if let Written::Arc(arc) = curve {
-            let radius = to_arc(decimals, arc).map_or(f64::INFINITY, |arc| arc.radius());
-            let [u, v, w] = arc.plane.axes();
-            for &axis in wanted {
-                // Each axis of the plane may have the whole of F, and v²/R towards the centre.
+            let Some(meant) = to_arc(decimals, arc) else { continue };
+            let [u, v, w] = meant.frame().axes();
+            for &axis in wanted.iter().filter(|axis| **axis < 3) {
+                // Each axis of the plane may have the whole of F, and v²/R towards the centre; of a plane that is tilted the
+                // share that the axis has in it.
                 let at = decimals.position(&arc.start);
                 let most = |amount| Most { amount, at, span };
-                if axis == u || axis == v {
-                    take(&mut speeds, axis, most(feed));
-                    take(&mut accelerations, axis, most((feed / 60.0) * (feed / 60.0) / radius));
-                } else if axis == w && arc.start[w] != arc.end[w] {
+                let within = (u[axis] * u[axis] + v[axis] * v[axis]).sqrt();
+                if within != 0.0 {
+                    take(&mut speeds, axis, most(feed * within));
+                    let toward = (feed / 60.0) * (feed / 60.0) / meant.radius();
+                    take(&mut accelerations, axis, most(toward * within));
+                }
+                if w[axis] != 0.0 && arc.start[axis] != arc.end[axis] && within != 1.0 {
                     take(&mut speeds, axis, most(feed));
                 }
             }

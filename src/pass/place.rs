@@ -10,7 +10,9 @@ mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
-use crate::ir::{Curve, Cut, Described, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
+use crate::ir::{
+    Auxiliary, Curve, Cut, Described, Intent, Located, Logarithmic, Polyline, Role, Shift, Step,
+};
 use crate::machine::Machine;
 use crate::units::{Axes, Axis, DEGREES, Kind, Position};
 
@@ -34,7 +36,11 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
     }
     plane::tilt(&mut intent, machine)?;
     let machine = machine.with_axes(&intent.program.axes)?;
-    tip::lead(&mut intent, &machine)?;
+    // A program that was written before leads it already.
+    let led = |located: &Located<f64, Curve>| located.step == Step::Auxiliary(Auxiliary::TipControl);
+    if !intent.program.steps.iter().any(led) {
+        tip::lead(&mut intent, &machine)?;
+    }
     homes(&mut intent, &machine);
     if intent.program.axes.direction().is_none() {
         over_the_work(&mut intent);

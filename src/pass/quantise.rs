@@ -23,18 +23,18 @@ mod rational;
 
 use crate::decimal::{Decimal, Origin, round_units, units_to_f64};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::dialect::{ArcWord, Form};
-use crate::geom::arc::Arc;
+use crate::dialect::{ArcKind, ArcWord, Form};
+use crate::geom::arc::{Arc, Plane};
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    self, ArcBy, Auxiliary, COEFFICIENTS, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock, Program,
-    Role, Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
+    ArcBy, Auxiliary, COEFFICIENTS, Circle, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock,
+    Program, Role, Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
     turned_end,
 };
 use crate::machine::Machine;
 use crate::setup::wrapped;
-use crate::units::{DEGREES, Kind, MAX_AXES};
+use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 
 /// The most decimals of a coefficient.
 const MAX_COEFFICIENT_DIGITS: u8 = 12;
@@ -268,62 +268,83 @@ impl Quantiser<'_> {
     ///
     /// One that starts at no place in decimals goes on by an angle too: with an end, a whole circle could be next to nothing.
     fn arc(&mut self, arc: &Arc, loose: bool) -> Result<Written, Unwritable> {
-        let (start, mut end) = (self.start(&arc.start())?, self.point(&arc.end())?);
-        let [u, v, w] = arc.plane().axes();
-        if !arc.is_full() && start[u] == end[u] && start[v] == end[v] && arc.sweep().abs() < 1.0 {
+        let (start, end) = (self.start(&arc.start())?, self.point(&arc.end())?);
+        let kind = super::arcs::kind(arc);
+        let Some(plane) = arc.plane() else {
+            return match (self.machine.dialect.arcs.word)(kind, self.machine) {
+                Some(ArcWord::Way) => self.arc_by_way(arc, start, end),
+                Some(ArcWord::Center | ArcWord::Turn) | None => self.arc_in_lines(arc),
+            };
+        };
+        let [u, v, w] = plane.axes();
+        let over = start[u] == end[u] && start[v] == end[v];
+        if !arc.is_full() && over && arc.sweep().abs() < 1.0 {
             self.arrive(&end);
-            let units = end[..self.machine.axes.count()].to_vec();
             let stride = self.machine.axes.count();
-            return Ok(Written::Lines(WrittenPoints {
-                start,
-                stride,
-                units,
-                lines: Vec::new(),
-                rates: Vec::new(),
-            }));
+            let units = end[..stride].to_vec();
+            let (lines, rates) = (Vec::new(), Vec::new());
+            return Ok(Written::Lines(WrittenPoints { start, stride, units, lines, rates }));
         }
-        let (plane, sense) = (arc.plane(), arc.sense());
+        let kind = ArcKind { helix: start[w] != end[w], ..kind };
+        let word = (self.machine.dialect.arcs.word)(kind, self.machine);
         let center = [self.units(u, arc.center()[0])?, self.units(v, arc.center()[1])?];
-        let word = (self.machine.dialect.arc)(plane, start[w] != end[w]);
-        let by = match word.map(|word| if loose { ArcWord::Turn } else { word }) {
-            None | Some(ArcWord::Center) => ArcBy::Center(center),
-            Some(ArcWord::Way) => {
-                let mut way = self.point(&arc.eval(0.5))?;
-                way[w] = start[w];
-                ArcBy::Way(way)
+        let circle = Circle { plane, sense: arc.sense(), center };
+        let stated = WrittenArc { start, end, by: ArcBy::Center(circle, 0), line: 0 };
+        let once = stated.arc(&self.digits).ok_or(Unwritable)?;
+        let turns = (arc.turns() - once.turns()).round().max(0.0) as u32;
+        match word.map(|word| if loose { ArcWord::Turn } else { word }) {
+            None => self.arc_in_lines(arc),
+            Some(ArcWord::Center) => {
+                self.arrive(&end);
+                Ok(Written::Arc(WrittenArc { by: ArcBy::Center(circle, turns), ..stated }))
             }
+            Some(ArcWord::Way) => self.arc_by_way(arc, start, end),
             Some(ArcWord::Turn) => {
-                let stated = WrittenArc { plane, sense, start, end, by: ArcBy::Center(center), line: 0 };
-                let sweep = self.bounded(arc, &stated).ok_or(Unwritable)?.0.sweep().abs();
+                let sweep = once.with_turns(turns).sweep().abs();
                 let degrees =
                     Decimal::round(sweep * DEGREES, self.machine.digits.rotary).ok_or(Unwritable)?;
-                end = turned_end(plane, &self.digits, (&start, &end), center, ir::sweep(sense, degrees))
-                    .ok_or(Unwritable)?;
+                let end = turned_end(&self.digits, (&start, &end), &circle, degrees).ok_or(Unwritable)?;
                 self.loose = true;
-                ArcBy::Turn(center, degrees)
+                self.arrive(&end);
+                Ok(Written::Arc(WrittenArc { end, by: ArcBy::Turn(circle, degrees), ..stated }))
             }
-        };
-        let written = WrittenArc { plane, sense, start, end, by, line: 0 };
-        // Places on a flat arc say little about its centre; lines then say more.
-        let known = self.bounded(arc, &written).is_some_and(|(_, bound)| bound <= self.tolerance);
-        if matches!(by, ArcBy::Way(_)) && !known {
-            return Ok(Written::Lines(self.points(&super::arcs::lines(
-                arc,
-                self.machine.axes.count(),
-                0.5 * self.tolerance,
-            ))?));
+        }
+    }
+
+    /// An arc by a place in its middle; lines where one would do, and where rounded places say too little about it.
+    fn arc_by_way(&mut self, arc: &Arc, start: Units, end: Units) -> Result<Written, Unwritable> {
+        let mut way = start;
+        way[..3].copy_from_slice(&self.point(&arc.eval(0.5))?[..3]);
+        if let Some([.., w]) = arc.plane().map(Plane::axes) {
+            way[w] = start[w];
+        }
+        let written = WrittenArc { start, end, by: ArcBy::Way(way), line: 0 };
+        let directed = self.machine.axes.direction();
+        let near = written.arc(&self.digits).is_some_and(|meant| {
+            // The direction of the tool is no place.
+            let along = |p: &Position| {
+                let mut place = *p;
+                if let Some(first) = directed {
+                    place[first..].fill(0.0);
+                }
+                place
+            };
+            arc.mapped_along(along).apart(&meant.mapped_along(along)) <= self.tolerance
+        });
+        if !near || self.chords(arc).count() == 1 {
+            return self.arc_in_lines(arc);
         }
         self.arrive(&end);
         Ok(Written::Arc(written))
     }
 
-    /// The arc that decimals mean, and how far it is from the one asked, mm.
-    fn bounded(&self, asked: &Arc, written: &WrittenArc) -> Option<(Arc, f64)> {
-        let place = |units: &Units| std::array::from_fn(|i| units_to_f64(units[i], self.digits[i]));
-        let (start, end) = (place(&written.start), place(&written.end));
-        let center = written.center(&self.digits)?;
-        let arc = Arc::new(written.plane, written.sense, start, end, center).ok()?;
-        Some((arc, asked.deviation(written.plane, written.sense, start, end, center)))
+    fn chords(&self, arc: &Arc) -> Polyline {
+        super::arcs::lines(arc, self.machine.axes.count(), 0.5 * self.tolerance)
+    }
+
+    fn arc_in_lines(&mut self, arc: &Arc) -> Result<Written, Unwritable> {
+        let chords = self.chords(arc);
+        Ok(Written::Lines(self.points(&chords)?))
     }
 
     fn polynomial(&mut self, pieces: &[Bezier], closing: bool) -> Result<Written, Unwritable> {

@@ -23,6 +23,9 @@ const PLACES: [usize; 2] = [64, 8];
 /// The most places in all.
 const MOST_PLACES: usize = 200_000;
 
+/// A place is at the end of its piece where so little of it is left, mm: what numbers in decimals are apart.
+const END: f64 = 1.0e-3;
+
 fn runs(track: &Track) -> Vec<Range<usize>> {
     let run = |event: &Event| match event {
         Event::Run(range) => Some(range.clone()),
@@ -72,7 +75,7 @@ fn nearest(
         }
         // At its end the next piece may be nearer.
         match pieces.get(piece + 1) {
-            Some(next) if u == own.to => {
+            Some(next) if surface.distance(&own.curve.at(u), &own.curve.at(own.to)) <= END => {
                 piece += 1;
                 u = next.from;
             }
@@ -149,7 +152,6 @@ mod tests {
             pieces: points.windows(2).map(line).collect(),
             places: Vec::new(),
             through: false,
-            planes: false,
             radius_unknown: false,
             polygons: Vec::new(),
         }

@@ -128,9 +128,6 @@ impl Summary {
                 "the control's own spline is known at its points only; here lines join them".to_owned(),
             );
         }
-        if track.planes {
-            notes.push("places are counted in tilted planes, each in its own".to_owned());
-        }
         if track.radius_unknown {
             notes.push(
                 "F counts rotary axes at a radius that the program does not say; here a degree counts as a millimetre"

@@ -22,6 +22,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::logcurve::Measure;
+use crate::geom::rotation::Rotation;
 use crate::ir::{
     Auxiliary, Curve, Cut, Decimals, Described, Logarithmic, Method, Polyline, Program, Step, Written,
     WrittenPoints,
@@ -77,8 +78,6 @@ pub struct Track {
     pub places: Vec<Place>,
     /// The points that the control leads a spline of its own through were joined by lines.
     pub through: bool,
-    /// Places are counted in tilted planes, each in its own.
-    pub planes: bool,
     /// F counts rotary axes at a radius that is not known; a degree counted as a millimetre.
     pub radius_unknown: bool,
     /// Control polygons, where they are asked for.
@@ -117,6 +116,8 @@ impl Track {
                 Step::Rapid(targets) => builder.rapid(targets.iter().copied()),
                 Step::Home(axis) => builder.home(*axis),
                 Step::Auxiliary(Auxiliary::Dwell(seconds)) => builder.dwell(*seconds),
+                Step::Auxiliary(Auxiliary::Plane(angles)) => builder.plane(Some(*angles)),
+                Step::Auxiliary(Auxiliary::PlaneEnd) => builder.plane(None),
                 Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Auxiliary(_) => builder.stand(),
                 Step::Comment(_) | Step::Shift(_) => {}
             }
@@ -145,7 +146,8 @@ impl Track {
                 Step::Rapid(targets) => builder.rapid(targets.iter().map(|(axis, to)| (*axis, to.to_f64()))),
                 Step::Home(axis) => builder.home(*axis),
                 Step::Auxiliary(Auxiliary::Dwell(seconds)) => builder.dwell(seconds.to_f64()),
-                Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => builder.plane(),
+                Step::Auxiliary(Auxiliary::Plane(angles)) => builder.plane(Some(angles.map(Decimal::to_f64))),
+                Step::Auxiliary(Auxiliary::PlaneEnd) => builder.plane(None),
                 Step::Tool(_) | Step::Spindle(_) | Step::Coolant | Step::Auxiliary(_) => builder.stand(),
                 Step::Comment(_) | Step::Shift(_) => {}
             }
@@ -180,6 +182,8 @@ struct Builder<'m> {
     /// What that is a speed of.
     counted: Counted,
     position: [Option<f64>; MAX_AXES],
+    /// The plane in which places count, where one is tilted.
+    plane: Option<Rotation>,
     /// The first piece of the run that is open.
     open: usize,
 }
@@ -192,7 +196,6 @@ impl<'m> Builder<'m> {
             pieces: Vec::new(),
             places: Vec::new(),
             through: false,
-            planes: false,
             radius_unknown: false,
             polygons: Vec::new(),
         };
@@ -204,6 +207,7 @@ impl<'m> Builder<'m> {
             feed: 0.0,
             counted: Counted::Path(0.0),
             position: [None; MAX_AXES],
+            plane: None,
             open: 0,
         }
     }
@@ -249,10 +253,20 @@ impl<'m> Builder<'m> {
     }
 
     /// Places count in another plane: where the axes are in it nobody knows.
-    fn plane(&mut self) {
+    fn plane(&mut self, angles: Option<[f64; 3]>) {
         self.stand();
-        self.track.planes = true;
         self.position = [None; MAX_AXES];
+        let order = self.setting.machine.map(|machine| machine.orientation.plane_order);
+        self.plane = order.zip(angles).map(|(order, angles)| Rotation::of(order, angles));
+    }
+
+    /// A place of a tilted plane in the coordinates of the work.
+    fn in_work(&self, p: &Position) -> Position {
+        let Some(plane) = &self.plane else { return *p };
+        let [x, y, z] = plane.out([p[0], p[1], p[2]]);
+        let mut place = *p;
+        (place[0], place[1], place[2]) = (x, y, z);
+        place
     }
 
     fn dwell(&mut self, seconds: f64) {
@@ -338,8 +352,9 @@ impl<'m> Builder<'m> {
     }
 
     fn line(&mut self, from: &Position, to: &Position, line: u32) {
+        let (from, to) = (self.in_work(from), self.in_work(to));
         let reach = std::array::from_fn(|i| to[i] - from[i]);
-        self.piece(Shape::line(*from, *to), &reach, None, line);
+        self.piece(Shape::line(from, to), &reach, None, line);
     }
 
     fn lines(&mut self, polyline: &Polyline) {
@@ -351,21 +366,25 @@ impl<'m> Builder<'m> {
     }
 
     fn bezier(&mut self, piece: &Bezier, line: u32) {
+        let mut piece = *piece;
+        piece.points.iter_mut().for_each(|point| *point = self.in_work(point));
         let points = piece.control_points();
         let reach =
             std::array::from_fn(|i| points.iter().map(|p| (p[i] - points[0][i]).abs()).fold(0.0, f64::max));
-        self.piece(Shape::bezier(piece), &reach, None, line);
+        self.piece(Shape::bezier(&piece), &reach, None, line);
     }
 
     fn polygon(&mut self, points: &[Position]) {
         if self.setting.polygons {
-            self.track.polygons.push(points.to_vec());
+            let points = points.iter().map(|point| self.in_work(point)).collect();
+            self.track.polygons.push(points);
         }
     }
 
     fn arc(&mut self, arc: &Arc, line: u32) {
+        let arc = self.plane.map_or(*arc, |plane| arc.turned(&plane.0, 0.0));
         let (low, high) = arc.range();
-        self.piece(Shape::Arc(Box::new(*arc)), &std::array::from_fn(|i| high[i] - low[i]), None, line);
+        self.piece(Shape::Arc(Box::new(arc)), &std::array::from_fn(|i| high[i] - low[i]), None, line);
     }
 
     fn curve(&mut self, curve: &Curve) -> Result<(), Diagnostics> {

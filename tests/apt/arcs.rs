@@ -6,7 +6,10 @@
     reason = "the oracle uses the platform's functions so that it shares no code with the crate"
 )]
 
+mod cases;
+
 use super::program;
+use cases::{CASES, Case, cross, dot, minus};
 use splinepost::dialect::Dialect;
 use splinepost::machine::Machine;
 use splinepost::source::{Source, Sources};
@@ -14,132 +17,6 @@ use splinepost::{Options, front, verify_program};
 use std::f64::consts::PI;
 
 type Point = [f64; 3];
-
-/// An arc as CIRCLE states it in Creo: counter-clockwise about its axis.
-struct Case {
-    name: &'static str,
-    start: Point,
-    center: Point,
-    axis: Point,
-    end: Point,
-    /// Degrees, counter-clockwise about +X, +Y or +Z.
-    sweep: f64,
-    /// The words that each dialect has for it: Sinumerik, Heidenhain, Mazak.
-    words: [&'static str; 3],
-}
-
-const CASES: &[Case] = &[
-    Case {
-        name: "three quarters in X Y",
-        start: [0.0, 0.0, 0.0],
-        center: [5.0, 0.0, 0.0],
-        axis: [0.0, 0.0, 1.0],
-        end: [5.0, 5.0, 0.0],
-        sweep: 270.0,
-        words: ["G3 X5 Y5 I5 J0", "C X+5 Y+5 DR+", "G3 X5. Y5. I5. J0."],
-    },
-    Case {
-        name: "a whole circle in X Y",
-        start: [0.0, 0.0, 0.0],
-        center: [5.0, 0.0, 0.0],
-        axis: [0.0, 0.0, -1.0],
-        end: [0.0, 0.0, 0.0],
-        sweep: -360.0,
-        words: ["G2 X0 Y0 I5 J0", "C X+0 Y+0 DR-", "G2 X0. Y0. I5. J0."],
-    },
-    Case {
-        name: "a quarter in Z X",
-        start: [0.0, 2.0, 5.0],
-        center: [0.0, 2.0, 0.0],
-        axis: [0.0, 1.0, 0.0],
-        end: [5.0, 2.0, 0.0],
-        sweep: 90.0,
-        words: ["CIP X5 Z0 I1=AC(3.535534) J1=AC(2) K1=AC(3.535534)", "L X", "G18 G3 X5. Z0. I0. K-5."],
-    },
-    Case {
-        name: "a whole circle in Z X",
-        start: [0.0, 2.0, 5.0],
-        center: [0.0, 2.0, 0.0],
-        axis: [0.0, -1.0, 0.0],
-        end: [0.0, 2.0, 5.0],
-        sweep: -360.0,
-        words: ["CIP X0 Z-5", "L X", "G18 G2 X0. Z5. I0. K-5."],
-    },
-    Case {
-        name: "three quarters in Y Z",
-        start: [1.0, 5.0, 0.0],
-        center: [1.0, 0.0, 0.0],
-        axis: [-1.0, 0.0, 0.0],
-        end: [1.0, 0.0, 5.0],
-        sweep: -270.0,
-        words: ["CIP Y0 Z5 I1=AC(1)", "L Y", "G19 G2 Y0. Z5. J-5. K0."],
-    },
-    Case {
-        name: "a helix of three quarters",
-        start: [0.0, 0.0, 0.0],
-        center: [5.0, 0.0, 0.0],
-        axis: [0.0, 0.0, 1.0],
-        end: [5.0, 5.0, -3.0],
-        sweep: 270.0,
-        words: ["G3 X5 Y5 Z-3 I5 J0", "CP IPA+270 IZ-3 DR+", "G3 X5. Y5. Z-3. I5. J0."],
-    },
-    Case {
-        name: "a helix of a whole turn",
-        start: [0.0, 0.0, 0.0],
-        center: [5.0, 0.0, 0.0],
-        axis: [0.0, 0.0, -1.0],
-        end: [0.0, 0.0, -3.0],
-        sweep: -360.0,
-        words: ["G2 X0 Y0 Z-3 I5 J0", "CP IPA-360 IZ-3 DR-", "G2 X0. Y0. Z-3. I5. J0."],
-    },
-    Case {
-        // atan2(4, −3) of the 3-4-5 triangle: an angle that rounds.
-        name: "a helix that ends at no round angle",
-        start: [10.0, 0.0, 0.0],
-        center: [5.0, 0.0, 0.0],
-        axis: [0.0, 0.0, 1.0],
-        end: [2.0, 4.0, 1.0],
-        sweep: 126.869_897_645_844,
-        words: ["G3 X2 Y4 Z1 I-5 J0", "CP IPA+126.8699 IZ+1 DR+", "G3 X2. Y4. Z1. I-5. J0."],
-    },
-    Case {
-        // Its sagitta is 5e-5 mm: three places with six decimals say where it runs, and nothing about its centre.
-        name: "a flat arc in Z X",
-        start: [0.0, 2.0, 1000.0],
-        center: [0.0, 2.0, 0.0],
-        axis: [0.0, 1.0, 0.0],
-        end: [0.6, 2.0, 999.999_82],
-        sweep: 0.034_377_469,
-        words: ["X0.6 Z999.99982", "L X+0.6", "G18 G3 X0.6"],
-    },
-];
-
-impl Case {
-    fn text(&self) -> String {
-        let list = |p: Point| p.map(|x| x.to_string()).join(",");
-        let [x, y, _] = self.start;
-        format!(
-            "PARTNO ARC\nLOADTL/1\nSPINDL/500,CLW\nFEDRAT/100\nRAPID\nGOTO/{x},{y},1200\nGOTO/{start}\n\
-             CIRCLE/{center},{axis},{radius}\nGOTO/{end}\nGOTO/40,-30,1100\nGOTO/40,-30,1200\nFINI\n",
-            start = list(self.start),
-            center = list(self.center),
-            axis = list(self.axis),
-            radius = self.radius(),
-            end = list(self.end),
-        )
-    }
-
-    /// Which coordinates are u, v and w of its plane.
-    fn plane(&self) -> [usize; 3] {
-        let w = (0..3).find(|i| self.axis[*i] != 0.0).expect("an axis");
-        [(w + 1) % 3, (w + 2) % 3, w]
-    }
-
-    fn radius(&self) -> f64 {
-        let [u, v, _] = self.plane();
-        (self.start[u] - self.center[u]).hypot(self.start[v] - self.center[v])
-    }
-}
 
 fn number(text: &str) -> f64 {
     text.parse().unwrap_or_else(|_| panic!("`{text}` is no number"))
@@ -171,18 +48,25 @@ fn sweep_to([u, v, _]: [usize; 3], from: Point, to: Point, center: [f64; 2], clo
     if clockwise { sweep - 2.0 * PI } else { sweep }
 }
 
-/// CIP: the circle through three places of a plane, by its perpendicular bisectors, run by the second.
+/// CIP: the circle through three places, by the weights that they have in its centre, run by the second.
 fn by_way(from: Point, way: Point, to: Point) -> Vec<Point> {
-    let w = (0..3).find(|i| from[*i] == way[*i] && from[*i] == to[*i]).expect("a plane");
-    let plane @ [u, v, _] = [(w + 1) % 3, (w + 2) % 3, w];
-    let (b, c) = ([way[u] - from[u], way[v] - from[v]], [to[u] - from[u], to[v] - from[v]]);
-    let cross = b[0] * c[1] - b[1] * c[0];
-    let (bb, cc) = (b[0] * b[0] + b[1] * b[1], c[0] * c[0] + c[1] * c[1]);
-    let center = [
-        from[u] + (c[1] * bb - b[1] * cc) / (2.0 * cross),
-        from[v] + (b[0] * cc - c[0] * bb) / (2.0 * cross),
-    ];
-    turn(plane, from, center, sweep_to(plane, from, to, center, cross < 0.0), 0.0)
+    let square = |a: Point, b: Point| dot(minus(a, b), minus(a, b));
+    let (a, b, c) = (square(way, to), square(to, from), square(from, way));
+    let weights = [a * (b + c - a), b * (c + a - b), c * (a + b - c)];
+    let whole: f64 = weights.iter().sum();
+    let center =
+        std::array::from_fn(|i| (weights[0] * from[i] + weights[1] * way[i] + weights[2] * to[i]) / whole);
+    let radial = minus(from, center);
+    let normal = cross(minus(way, from), minus(to, from));
+    let across = cross(normal.map(|x| x / dot(normal, normal).sqrt()), radial);
+    let end = minus(to, center);
+    let sweep = dot(end, across).atan2(dot(end, radial)).rem_euclid(2.0 * PI);
+    (1..=400)
+        .map(|i| {
+            let (sin, cos) = (f64::from(i) / 400.0 * sweep).sin_cos();
+            std::array::from_fn(|k| center[k] + radial[k] * cos + across[k] * sin)
+        })
+        .collect()
 }
 
 /// Where a program goes at feed, in order, from its text.
@@ -197,7 +81,7 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
         }
         let (mut to, mut center, mut way) = (at, [0.0; 3], at);
         let (mut named, mut rapid) = (false, false);
-        let (mut clockwise, mut degrees, mut rise) = (false, None, 0.0);
+        let (mut clockwise, mut degrees, mut rise, mut turns) = (false, None, 0.0, 0.0);
         if dialect == "heidenhain" {
             if !matches!(words.first(), Some(&("L" | "CC" | "C" | "CP"))) {
                 continue;
@@ -217,6 +101,8 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
                         let axis =
                             ["I1", "J1", "K1"].iter().position(|known| *known == name).expect("I1 J1 K1");
                         way[axis] = number(place.trim_end_matches(')'));
+                    } else if let Some(whole) = word.strip_prefix("TURN=") {
+                        turns = number(whole);
                     } else if let Some(angle) = word.strip_prefix("IPA") {
                         degrees = Some(number(angle));
                     } else if let Some(step) = word.strip_prefix("IZ") {
@@ -249,7 +135,8 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
             }
             "G2" | "G3" if named => {
                 let center = [from[u] + center[u], from[v] + center[v]];
-                let sweep = sweep_to(plane, from, to, center, mode == "G2");
+                let once = sweep_to(plane, from, to, center, mode == "G2");
+                let sweep = once + once.signum() * turns * 2.0 * PI;
                 path.extend(turn(plane, from, center, sweep, to[w] - from[w]));
             }
             "CIP" if named => path.extend(by_way(from, way, to)),
@@ -271,55 +158,92 @@ fn machines() -> impl Iterator<Item = (&'static Dialect, Machine)> {
     splinepost::dialect::DIALECTS.iter().map(move |dialect| (dialect, machine(dialect)))
 }
 
+/// Of Sinumerik also a machine whose tool keeps its length along Z in every plane.
+fn with_planes() -> (&'static Dialect, Machine) {
+    let dialect = splinepost::dialect::find("sinumerik").expect("sinumerik");
+    (dialect, crate::support::machine("extends = \"sinumerik\"\n[arcs]\nplanes = true\n"))
+}
+
 #[test]
 fn arcs_of_every_plane_run_where_they_were_asked() {
     for case in CASES {
-        let [u, v, w] = case.plane();
-        let sweep = case.sweep.to_radians();
-        for (i, (dialect, machine)) in machines().enumerate() {
-            let what = format!("{} for {}", case.name, dialect.name);
-            let output = program("creo", &case.text(), &machine).unwrap_or_else(|e| panic!("{what}: {e:?}"));
-            assert!(output.text.contains(case.words[i]), "{what}: no {}\n{}", case.words[i], output.text);
-            let bound = output.report.expect("a proof").deviation.mm;
-            assert!(bound <= 1e-3, "{what}: {bound}");
-            let path = run(dialect.name, &output.text);
-            let near = |p: &Point, q: &Point| (0..3).all(|k| (p[k] - q[k]).abs() < 1e-9);
-            let first =
-                path.iter().position(|p| near(p, &case.start)).unwrap_or_else(|| panic!("{what}: no start"));
-            // What is turned since the start, until the arc is over.
-            let about = |p: &Point| (p[u] - case.center[u], p[v] - case.center[v]);
-            let (mut turned, mut last) = (0.0, path[first]);
-            let mut worst = 0.0f64;
-            for p in &path[first + 1..] {
-                let ((x, y), (x0, y0)) = (about(p), about(&last));
-                turned += (x0 * y - y0 * x).atan2(x0 * x + y0 * y);
-                last = *p;
-                worst = worst.max((x.hypot(y) - case.radius()).abs());
-                // At equal shares of the sweep, as the proof compares.
-                let height = case.start[w] + turned / sweep * (case.end[w] - case.start[w]);
-                worst = worst.max((p[w] - height).abs());
-                if sweep.abs() - 1e-6 < turned.abs() {
-                    break;
-                }
+        for (i, (dialect, machine)) in machines().chain([with_planes()]).enumerate() {
+            let output = runs(case, dialect, &machine);
+            if let Some(words) = case.words.get(i) {
+                assert!(output.contains(words), "{} for {}: no {words}\n{output}", case.name, dialect.name);
             }
-            assert!((turned - sweep).abs() < 2e-6, "{what}: turns by {turned}, not {sweep}");
-            let gap = (0..3).map(|k| (last[k] - case.end[k]).abs()).fold(0.0, f64::max);
-            worst = worst.max(gap);
-            // What the oracle sees, the proof must have bounded; 1e-9 is for the oracle's own sums.
-            assert!(worst <= bound + 1e-9, "{what}: {worst} seen, {bound} proved");
         }
     }
+}
+
+/// Runs a case's program, and returns it.
+fn runs(case: &Case, dialect: &Dialect, machine: &Machine) -> String {
+    let sweep = case.sweep.to_radians();
+    let what = format!("{} for {}", case.name, dialect.name);
+    let output = program(case.system(), &case.text(), machine).unwrap_or_else(|e| panic!("{what}: {e:?}"));
+    let bound = output.report.expect("a proof").deviation.mm;
+    assert!(bound <= 1e-3, "{what}: {bound}");
+    let path = run(dialect.name, &output.text);
+    let near = |p: &Point, q: &Point| (0..3).all(|k| (p[k] - q[k]).abs() < 1e-9);
+    let first = path.iter().position(|p| near(p, &case.start)).unwrap_or_else(|| panic!("{what}: no start"));
+    let ([.., low], [.., high]) = (case.local(case.start), case.local(case.end));
+    // What is turned since the start, until the arc is over.
+    let (mut turned, mut last) = (0.0, path[first]);
+    let mut worst = 0.0f64;
+    for p in &path[first + 1..] {
+        let ([x, y, z], [x0, y0, _]) = (case.local(*p), case.local(last));
+        turned += (x0 * y - y0 * x).atan2(x0 * x + y0 * y);
+        last = *p;
+        worst = worst.max((x.hypot(y) - case.radius()).abs());
+        // At equal shares of the sweep, as the proof compares.
+        worst = worst.max((z - low - turned / sweep * (high - low)).abs());
+        if sweep.abs() - 1e-6 < turned.abs() {
+            break;
+        }
+    }
+    // Some 5e-7 mm of six decimals at R = 5 mm, of each block.
+    assert!((turned - sweep).abs() < 2e-6, "{what}: turns by {turned}, not {sweep}");
+    let gap = (0..3).map(|k| (last[k] - case.end[k]).abs()).fold(0.0, f64::max);
+    worst = worst.max(gap);
+    // What the oracle sees, the proof must have bounded; 1e-9 is for the oracle's own sums.
+    assert!(worst <= bound + 1e-9, "{what}: {worst} seen, {bound} proved\n{}", output.text);
+    output.text
+}
+
+/// Where the tool keeps its length along Z, arcs of every plane of the machine are G2 and G3, and G17 stands again before
+/// anything else.
+#[test]
+fn planes_are_chosen_where_the_machine_file_allows_it() {
+    let (dialect, machine) = with_planes();
+    let text = |name: &str| {
+        let case = CASES.iter().find(|case| case.name == name).expect("a case");
+        runs(case, dialect, &machine)
+    };
+    let helix = text("a helix about Y");
+    assert!(helix.contains("G18 G3 X5 Y4 Z0 I0 K-5"), "{helix}");
+    let [arc, plane, end] = ["G18", "G17\n", "M30"].map(|word| helix.find(word).expect(word));
+    assert!(arc < plane && plane < end, "{helix}");
+    assert!(text("a turn and a quarter in Z X").contains("G18 G3 X5 Z0 I0 K-5 TURN=1"));
+    assert!(text("a quarter in a tilted plane").contains("CIP X1 Y-3 Z3"));
+    // Another machine of the same control does not take what it would read in another way.
+    let built_in = Machine::built_in("sinumerik").expect("sinumerik");
+    let mut sources = Sources::new(Source::new("input.cl", CASES[17].text()));
+    let id = sources.push(Source::new("program", helix));
+    let language = front::find("creo").expect("creo");
+    let refused = verify_program(&sources, language, id, &built_in, &Options::default());
+    assert_eq!(refused.expect_err("G18").0[0].id, "arc-plane");
 }
 
 /// Every number of a block of an arc by a tenth, every sense, and every block left out: each is refused.
 #[test]
 fn damaged_arcs_of_every_plane_are_refused() {
-    let language = front::find("creo").expect("creo");
     for case in CASES {
+        let language = front::find(case.system()).expect("a system");
         for (i, (dialect, machine)) in machines().enumerate() {
             let input = case.text();
-            let text =
-                program("creo", &input, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", case.name)).text;
+            let text = program(case.system(), &input, &machine)
+                .unwrap_or_else(|e| panic!("{}: {e:?}", case.name))
+                .text;
             let refused = |damaged: String, what: &str| {
                 let mut sources = Sources::new(Source::new("input.cl", input.clone()));
                 let id = sources.push(Source::new("program", damaged));
@@ -345,6 +269,9 @@ fn damaged_arcs_of_every_plane_are_refused() {
                 let words: Vec<&str> = lines[at].split(' ').collect();
                 for (n, word) in words.iter().enumerate().skip(1) {
                     let mut other = words.clone();
+                    other.remove(n);
+                    refused(replaced(at, Some(other.join(" "))), &format!("without {word}"));
+                    let mut other = words.clone();
                     let digit =
                         word.find(|c: char| c.is_ascii_digit() || "+-".contains(c)).unwrap_or(word.len());
                     let value = word[digit..].trim_end_matches(')').parse::<f64>().ok();
@@ -355,6 +282,9 @@ fn damaged_arcs_of_every_plane_are_refused() {
                         ("G19", _) => "G17".to_owned(),
                         ("DR+", _) => "DR-".to_owned(),
                         ("DR-", _) => "DR+".to_owned(),
+                        ("TURN=1", _) => "TURN=2".to_owned(),
+                        ("TURN=2", _) => "TURN=1".to_owned(),
+                        ("TURN=18", _) => "TURN=17".to_owned(),
                         // A place on the way: its value stands behind the parenthesis.
                         (way, _) if way.contains("=AC(") => {
                             let (name, place) = way.split_once("=AC(").expect("AC");
@@ -388,7 +318,8 @@ fn a_path_behind_a_helix_names_where_it_ends() {
     let text = program("creo", &case.text(), &machine).expect("a program").text;
     let refused = |from, to| refusal((&case.text(), &text), &machine, (from, to));
     assert_eq!(refused("L X+40 Y-30", "L X+40"), "helix-end");
-    assert_eq!(refused("IPA+126.8699", "IPA+486.8699"), "helix");
+    assert_eq!(refused("IPA+126.8699", "IPA+486.8699"), "deviation-too-large");
+    assert_eq!(refused("IPA+126.8699", "IPA+5486.8699"), "helix");
     assert_eq!(refused("IPA+126.8699", "IPA-126.8699"), "helix");
     assert_eq!(refused(" IZ+1", ""), "deviation-too-large");
     assert_eq!(refused("IZ+1", "IX+1"), "arc-word");
@@ -424,6 +355,62 @@ fn a_circle_behind_a_helix_is_a_whole_one() {
     }
 }
 
+/// Of several turns each word counts: what one more or less is told.
+#[test]
+fn a_turn_more_or_less_is_refused() {
+    let named = |name: &str| CASES.iter().find(|case| case.name == name).expect("a case");
+    let refused = |name: &str, dialect: &str, from: &str, to: &str| {
+        let (case, machine) = (named(name), Machine::built_in(dialect).expect("a machine"));
+        let text = program(case.system(), &case.text(), &machine).expect("a program").text;
+        assert!(text.contains(from), "{text}");
+        let mut sources = Sources::new(Source::new("input.cl", case.text()));
+        let id = sources.push(Source::new("program", text.replacen(from, to, 1)));
+        let language = front::find(case.system()).expect("a system");
+        verify_program(&sources, language, id, &machine, &Options::default()).expect_err(to).0[0].id
+    };
+    let (helix, flat) = ("two turns and three quarters of a helix", "round twice in X Y");
+    for (from, to) in [(" TURN=2", ""), ("TURN=2", "TURN=1"), ("TURN=2", "TURN=3")] {
+        assert_eq!(refused(helix, "sinumerik", from, to), "deviation-too-large");
+    }
+    assert_eq!(refused(helix, "sinumerik", "TURN=2", "TURN=2.5"), "arc-turns");
+    assert_eq!(refused(helix, "sinumerik", "TURN=2", "TURN=1000"), "arc-turns");
+    assert_eq!(refused(helix, "sinumerik", "TURN=2", "TURN=2 TURN=2"), "axis-twice");
+    assert_eq!(refused(helix, "sinumerik", "G3 X5", "G1 X5"), "arc-word");
+    // Whether the turn of an end over its start is one of TURN's no page says.
+    assert_eq!(refused(flat, "sinumerik", "X10 Y0 I5 J0 TURN=1", "X0 Y0 I5 J0 TURN=1"), "arc-turns");
+    // Of turns in one plane the path is the same, only not how often: what comes next is none of the arc.
+    assert_eq!(refused(flat, "sinumerik", " TURN=1", ""), "deviation-too-large");
+    assert_eq!(refused(flat, "heidenhain", "IPA+720", "IPA+360"), "deviation-too-large");
+    assert_eq!(refused(flat, "heidenhain", "IPA+720", "IPA+1080"), "deviation-too-large");
+    assert_eq!(refused(helix, "heidenhain", "IPA+990", "IPA+630"), "deviation-too-large");
+}
+
+/// How an arc is cut into blocks is the text's to say: a turn a block is the same path.
+#[test]
+fn any_cut_of_an_arc_is_as_good() {
+    let machine = crate::support::machine("extends = \"sinumerik\"\n[text]\nnumber_step = 0\n");
+    let case = CASES.iter().find(|case| case.name == "two turns and three quarters of a helix").expect("it");
+    let text = program(case.system(), &case.text(), &machine).expect("a program").text;
+    let verified = |blocks: &str| {
+        let whole = "G17 G3 X5 Y5 Z-11 I5 J0 TURN=2\n";
+        assert!(text.contains(whole), "{text}");
+        let mut sources = Sources::new(Source::new("input.cl", case.text()));
+        let id = sources.push(Source::new("program", text.replacen(whole, blocks, 1)));
+        let language = front::find(case.system()).expect("a system");
+        let verified = verify_program(&sources, language, id, &machine, &Options::default());
+        verified.map(|verified| verified.report.deviation.mm).map_err(|errors| errors.0[0].id)
+    };
+    let turns = "G17 G3 X0 Y0 Z-4 I5 J0\nX0 Y0 Z-8 I5 J0\nX5 Y5 Z-11 I5 J0\n";
+    assert!(verified(turns).is_ok_and(|mm| mm < 1e-9));
+    assert!(verified("G17 G3 X10 Y0 Z-6 I5 J0 TURN=1\nX5 Y5 Z-11 I-5 J0 TURN=1\n").is_ok_and(|mm| mm < 1e-9));
+    // Another pitch for a while, a part too few, and one the other way round.
+    let faster = "G17 G3 X0 Y0 Z-4.1 I5 J0\nX0 Y0 Z-8 I5 J0\nX5 Y5 Z-11 I5 J0\n";
+    assert_eq!(verified(faster), Err("deviation-too-large"));
+    assert_eq!(verified("G17 G3 X0 Y0 Z-4 I5 J0\nX0 Y0 Z-8 I5 J0\n"), Err("deviation-too-large"));
+    let back = "G17 G3 X0 Y0 Z-4 I5 J0\nG2 X0 Y0 Z-8 I5 J0\nG3 X5 Y5 Z-11 I5 J0\n";
+    assert_eq!(verified(back), Err("arc-differs"));
+}
+
 #[test]
 fn a_place_on_the_way_makes_an_arc() {
     let machine = Machine::built_in("sinumerik").expect("sinumerik");
@@ -431,7 +418,7 @@ fn a_place_on_the_way_makes_an_arc() {
     let text = program("creo", &case.text(), &machine).expect("a program").text;
     let refused = |from, to| refusal((&case.text(), &text), &machine, (from, to));
     assert_eq!(refused(" J1=AC(2)", ""), "arc-way");
-    assert_eq!(refused("J1=AC(2)", "J1=AC(3)"), "arc-plane");
+    assert_eq!(refused("J1=AC(2)", "J1=AC(3)"), "deviation-too-large");
     assert_eq!(refused("J1=AC(2)", "L1=AC(2)"), "word-unknown");
     assert_eq!(refused("J1=AC(2)", "I1=AC(2)"), "axis-twice");
     // Whether it counts from zero or from the start would be the control's setting.
@@ -441,4 +428,17 @@ fn a_place_on_the_way_makes_an_arc() {
         "arc-plane"
     );
     assert_eq!(refused("CIP X5", "G1 X5"), "arc-word");
+    // In a tilted plane: beside it, on the other side, and another end.
+    let case = CASES.iter().find(|case| case.name == "a quarter in a tilted plane").expect("a case");
+    let text = program("creo", &case.text(), &machine).expect("a program").text;
+    let refused = |from, to| refusal((&case.text(), &text), &machine, (from, to));
+    assert_eq!(refused("I1=AC(3.12132)", "I1=AC(3.12332)"), "deviation-too-large");
+    assert_eq!(
+        refused(
+            "I1=AC(3.12132) J1=AC(-1.535534) K1=AC(5.828427)",
+            "I1=AC(-1.12132) J1=AC(5.535534) K1=AC(0.171573)"
+        ),
+        "deviation-too-large"
+    );
+    assert_eq!(refused("CIP X1 Y-3 Z3", "CIP X1 Y-3 Z3.002"), "deviation-too-large");
 }

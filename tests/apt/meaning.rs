@@ -63,10 +63,14 @@ fn a_sweep_of_several_turns_is_several_turns() {
             | Curve::Logarithmic(_) => None,
         })
         .collect();
-    // 810° = 2 turns and a quarter over 9 mm: 4 mm a turn.
-    let heights: Vec<f64> = arcs.iter().map(|arc| arc.end()[2]).collect();
+    let [arc] = arcs[..] else { panic!("{arcs:?}") };
+    assert_eq!(arc.turns(), 2.25);
+    // 810° = 2 turns and a quarter over 9 mm: 4 mm a turn. Each part starts and ends over the start, to the last bit.
+    let parts = arc.by_turns(1);
+    let heights: Vec<f64> = parts.iter().map(|arc| arc.end()[2]).collect();
     assert_eq!(heights, [-4.0, -8.0, -9.0]);
-    assert!(arcs[0].is_full() && arcs[1].is_full() && !arcs[2].is_full());
+    assert!(parts[0].is_full() && parts[1].is_full() && !parts[2].is_full());
+    assert_eq!(parts[1].start()[..2], parts[1].end()[..2]);
 }
 
 #[test]

@@ -15,7 +15,8 @@ fn machine(text: &str) -> Machine {
 
 /// The cases of five axes, by name and text.
 fn tilted() -> Vec<(String, String)> {
-    let five = ["catia-five-axes", "catia-second-curve", "creo-second-curve", "nx-five-axes"];
+    let five =
+        ["catia-five-arcs", "catia-five-axes", "catia-second-curve", "creo-second-curve", "nx-five-axes"];
     let of = |case: &std::path::PathBuf| {
         let name = case.file_name()?.to_string_lossy().into_owned();
         let text = fs::read_to_string(input(case)).ok()?;
@@ -273,6 +274,45 @@ fn the_tool_turns_at_safe_height() {
     let second =
         lines.iter().filter(|line| line.starts_with("G0 X") && line.contains("Z150 ")).nth(1).expect("it");
     assert!((numbers(second, &["X"])[0] - 75.462_9).abs() < 1e-3, "{second}");
+}
+
+/// An arc in which the tool keeps its direction is one where the control's manual says so, with the direction in its block.
+#[test]
+fn arcs_are_arcs_where_the_tool_keeps_its_direction() {
+    let (_, input) = tilted().into_iter().find(|(name, _)| name == "catia-five-arcs").expect("the case");
+    let text = |own: &str| in_motion(&input, &machine(own), "linear").expect("a program").text;
+    let sinumerik = text("extends = \"sinumerik\"");
+    for block in [
+        "G17 G3 X0 Y20 I-20 J0 A3=0.5 B3=0 C3=0.866025",
+        "CIP Y13 Z1 I1=AC(0) J1=AC(16.707107) K1=AC(1.949747) A3=0 B3=0.5 C3=0.866025",
+        "CIP X15 Y14 Z8 I1=AC(13.535534) J1=AC(11.171573) K1=AC(5.87868) A3=0 B3=0.5 C3=0.866025",
+    ] {
+        assert!(sinumerik.contains(block), "{sinumerik}");
+    }
+    let lines = text("extends = \"sinumerik\"\n[orientation]\narcs = false\n");
+    assert!(!lines.contains("G3") && !lines.contains("CIP"), "{lines}");
+    // In Klartext no page says it, so that it is the machine file's to say: in X Y, where C lies.
+    let (built_in, told) =
+        (text("extends = \"heidenhain\""), text("extends = \"heidenhain\"\n[orientation]\narcs = true\n"));
+    assert!(!built_in.contains(" CC ") && built_in.lines().count() > told.lines().count(), "{built_in}");
+    assert!(told.contains(" CC X+0 Y+0\n") && told.contains(" C X+0 Y+20 DR+\n"), "{told}");
+    // I J K would be the direction and the centre at once.
+    let mazak = Machine::parse("extends = \"mazak\"\n[orientation]\narcs = true\n", SourceId::INPUT);
+    assert_eq!(mazak.expect_err("I J K").0[0].id, "directed-arcs");
+    let planes = Machine::parse("extends = \"heidenhain\"\n[arcs]\nplanes = true\n", SourceId::INPUT);
+    assert_eq!(planes.expect_err("no words").0[0].id, "arc-planes");
+    // The direction belongs to the block.
+    let own = machine("extends = \"sinumerik\"");
+    for (from, to) in [
+        (" A3=0.5 B3=0 C3=0.866025\nN190", "\nN190"),
+        ("I-20 J0 A3=0.5", "I-20 J0 A3=0.6"),
+        ("I-20 J0 A3=0.5 ", "I-20 J0 "),
+        ("K1=AC(1.949747)", "K1=AC(1.959747)"),
+        ("G17 G3", "G17 G2"),
+    ] {
+        assert!(sinumerik.contains(from), "{from}\n{sinumerik}");
+        assert!(verified(&input, &sinumerik.replacen(from, to, 1), &own).is_err(), "{to} for {from}");
+    }
 }
 
 #[test]

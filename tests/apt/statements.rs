@@ -175,6 +175,32 @@ const TABLE: &[(&str, &str, Becomes)] = &[
         Read("arc Xy Clockwise from X 0.0 Y 0.0 Z 10.0 to X 5.0 Y 5.0 Z 10.0"),
     ),
     ("catia", "TLON,GOFWD/(CIRCLE/5,0,10,5),ON,(LINE/5,0,10,9,0,10)", Refused("tangent-missing")),
+    // in a plane that is tilted about Y, from (−3, 0, −4) to (0, 5, 0) beside the centre
+    (
+        "creo",
+        "CIRCLE/3,0,14,0.8,0,-0.6,5\nGOTO/3,5,14",
+        Read("] CounterClockwise from X 0.0 Y 0.0 Z 10.0 to X 3.0 Y 5.0 Z 14.0 about ["),
+    ),
+    ("solidworks", "CIRCLE/3,0,14,0.8,0,-0.6\nGOTO/3,5,14", Read("arc about [0.8, 0.0, -0.")),
+    (
+        "nx",
+        "CIRCLE/3,0,14,0.8,0,-0.6,5,.06,.5,10,0\nGOTO/3,5,14",
+        Read("] Clockwise from X 0.0 Y 0.0 Z 10.0 to X 3.0 Y 5.0 Z 14.0 about ["),
+    ),
+    ("fusion", "MOVARC/3,0,14,0.8,0,-0.6,5,ANGLE,450\nGOTO/3,5,14", Read(" turns 1.25\n")),
+    (
+        "catia",
+        "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/3,0,14,5),ON,(LINE/3,0,14,3,9,14)",
+        Read("arc about [0.8, 0.0, -0.6] CounterClockwise from X 0.0 Y 0.0 Z 10.0 to X "),
+    ),
+    (
+        "catia",
+        "INDIRV/0,-1,0\nTLON,GOFWD/(CYLNDR/3,0,14,0.8,0,-0.6,5),ON,(PLANE/PERPTO,(PLANE/(POINT/3,0,14),PERPTO,\
+         (VECTOR/0.8,0,-0.6)),(POINT/3,0,14),(POINT/3,5,14))",
+        Read("] Clockwise from X 0.0 Y 0.0 Z 10.0 to X "),
+    ),
+    // the plane of the tangent is not that of the end
+    ("catia", "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/3,0,14,5),ON,(LINE/3,0,14,4,9,14)", Refused("arc-plane")),
     ("catia", "PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,0,1))", Warned("word-left-out")),
     // splines
     ("nx", "NURBS/\nKNOT/1.0\nCNTRL/1,0,10\nCNTRL/2,0,10\nCNTRL/3,0,10", Read("nurbs of degree 3")),

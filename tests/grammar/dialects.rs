@@ -39,9 +39,13 @@ const ALONE: &[&str] = &["code-refused", "axis-unknown", "short-way-axis"];
 
 /// The default machine of a dialect without header and footer, so that a line can stand alone.
 fn bare(name: &str) -> Machine {
-    let feed = if name == "mazak" { "[feed]\nrotary = \"inverse-time\"\n" } else { "" };
+    let own = match name {
+        "mazak" => "[feed]\nrotary = \"inverse-time\"\n",
+        "sinumerik" => "[arcs]\nplanes = true\n",
+        _ => "",
+    };
     machine(&format!(
-        "extends = \"{name}\"\n{feed}[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nfooter = []\nclose = []\n"
+        "extends = \"{name}\"\n{own}[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nfooter = []\nclose = []\n"
     ))
 }
 
@@ -84,7 +88,7 @@ const WORDS: &str = "POLY BSPLINE ASPLINE CSPLINE UPATH SPATH BAUTO BNAT BTAN EA
     TRAFOOF TRAORI FFWON STOPRE G1X1 G01 SD=1 SD=2 SD=3 SD=4 PL=1 PW=1 PL1 SPLINEPATH(1,X) SPLINEPATH(2,X) FGROUP(X) \
     FGROUP(A) FGROUP() K1X+1 K3A1E2 K4X+1 FMAX FAUTO R0 RL RR M3 M99 X+1 IX+1 X+Q1 X1,5 x1 g1 E1 (a) (a /G1 % %1 ; ;a * *a \
     ~ N N1 1 ? ä F=R1 F=Q1 A=DC(5) A=DC(5 X=DC(5) R1=5 R=5 FQ1 F#1 F#a #1=5 #=5 IA+5 A3=1 B3=1 C3=1 D3=1 XH=1 YH=1 \
-    UH=1 PO[XH]=(1,2) XH=PO(1) ORICURVE ORIVECT ORIAXES ORIPATH TX+1 LN";
+    UH=1 PO[XH]=(1,2) XH=PO(1) ORICURVE ORIVECT ORIAXES ORIPATH TX+1 LN TURN=2";
 
 /// Blocks of one word, of every letter and every G code.
 fn blocks_of_one_word(dialect: &str) -> Vec<String> {

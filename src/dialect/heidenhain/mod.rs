@@ -64,7 +64,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Granted, Motion, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, Parameter, Round};
 use crate::geom::arc::Plane;
 
 /// The dialect.
@@ -89,10 +89,16 @@ pub const DIALECT: Dialect = Dialect {
     ],
     inverse_time: false,
     round: Round::Step,
-    // C and CP lie in the working plane, square to the tool.
-    arc: |plane, helix| match plane {
-        Plane::Xy => Some(if helix { ArcWord::Turn } else { ArcWord::Center }),
-        Plane::Zx | Plane::Yz => None,
+    arcs: Arcs {
+        // C and CP lie in the working plane, square to the tool.
+        word: |kind, _| match kind.plane {
+            Some(Plane::Xy) => Some(if kind.helix || kind.turns { ArcWord::Turn } else { ArcWord::Center }),
+            Some(Plane::Zx | Plane::Yz) | None => None,
+        },
+        // IPA is −5400 to 5400 degrees (TNC 426/430 280 476 p.154).
+        most_turns: 15,
+        planes: false,
+        directed: true,
     },
     direction: ["TX", "TY", "TZ"],
     turn: None,

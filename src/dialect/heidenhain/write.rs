@@ -119,20 +119,20 @@ impl Writer<'_> {
 
     /// The centre, then the end, or for a helix the angle and the height. `check` lets arcs in X Y pass only.
     fn arc(&mut self, arc: &WrittenArc, feed: Option<Decimal>) {
-        let [u, v, w] = arc.plane.axes();
-        let (center, turn) = match arc.by {
-            ArcBy::Center(center) => (center, None),
-            ArcBy::Turn(center, degrees) => (center, Some(degrees)),
+        let (circle, turn) = match arc.by {
+            ArcBy::Center(circle, _) => (circle, None),
+            ArcBy::Turn(circle, degrees) => (circle, Some(degrees)),
             // The dialect does not ask for it, so that `quantise` makes none.
             ArcBy::Way(_) => return,
         };
+        let [u, v, w] = circle.plane.axes();
         self.modal.begin("");
         self.modal.text("CC ");
-        self.modal.axis(u, center[0]);
-        self.modal.axis(v, center[1]);
+        self.modal.axis(u, circle.center[0]);
+        self.modal.axis(v, circle.center[1]);
         self.modal.end();
         self.modal.begin("");
-        let sense = counted_sense(self.modal.machine, arc.plane, arc.sense);
+        let sense = counted_sense(self.modal.machine, circle.plane, circle.sense);
         // The other axes rest; where they are is said by the next move that is straight.
         if let Some(degrees) = turn {
             self.modal.text("CP IPA");

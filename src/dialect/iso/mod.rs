@@ -60,7 +60,8 @@
 mod read;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
+use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -96,8 +97,18 @@ pub const MAZAK: Dialect = Dialect {
     ],
     inverse_time: true,
     round: Round::Place,
-    // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
-    arc: |_, _| Some(ArcWord::Center),
+    arcs: Arcs {
+        // G18 and G19 turn the plane of arcs; the length of the tool stays along Z, as G43 took it.
+        word: |kind, machine| match kind.plane {
+            Some(Plane::Xy) => Some(ArcWord::Center),
+            Some(Plane::Zx | Plane::Yz) => machine.arc_planes.then_some(ArcWord::Center),
+            None => None,
+        },
+        most_turns: 1,
+        planes: true,
+        // I J K are the direction of the tool, and the centre of an arc.
+        directed: false,
+    },
     direction: ["I", "J", "K"],
     turn: None,
     second_curve: false,

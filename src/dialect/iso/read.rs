@@ -490,7 +490,8 @@ impl Reader<'_> {
                 self.assembler.line(block.named(), line, span);
             }
             Motion::Arc(sense) => {
-                let said = arc::Said { plane: self.plane, sense, named: block.named(), offsets, line, span };
+                let (plane, turns) = (self.plane, 0);
+                let said = arc::Said { plane, sense, named: block.named(), offsets, turns, line, span };
                 arc::read(&mut self.assembler, &said);
             }
             Motion::Through => self.through_block(&block, line, span),

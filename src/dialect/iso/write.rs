@@ -121,9 +121,8 @@ impl Writer<'_> {
                         Written::Lines(points) => self.lines(points, cut.feed),
                         // The dialect asks for nothing but centres.
                         Written::Arc(arc) => {
-                            if let Some(center) = arc::stated_center(arc) {
-                                let arc = (arc, center);
-                                arc::write(&mut self.modal, arc, cut.feed, &mut self.plane);
+                            if let Some(circle) = arc::stated_circle(arc) {
+                                arc::write(&mut self.modal, arc, circle, cut.feed, &mut self.plane);
                             }
                         }
                         Written::Nurbs(nurbs) => self.nurbs(nurbs, &cut.curve, cut.feed),

@@ -74,15 +74,17 @@
 //! | X Y Z A | a word left out stays |
 //! | F, SD, UPATH, SPLINEPATH | yes |
 //! | ORIVECT ORIAXES ORICURVE | yes, one group |
-//! | PL, PW, PO[…], A3 B3 C3, XH YH ZH | never |
+//! | G17 G18 G19 | yes; the plane of arcs |
+//! | PL, PW, PO[…], I J K, TURN, I1 J1 K1, A3 B3 C3, XH YH ZH | never |
 
 mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
+use crate::machine::Machine;
 
 /// The dialect.
 pub const DIALECT: Dialect = Dialect {
@@ -130,11 +132,18 @@ pub const DIALECT: Dialect = Dialect {
     ],
     inverse_time: false,
     round: Round::Shortest,
-    // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
-    // no plane; it has no helices.
-    arc: |plane, helix| match plane {
-        Plane::Xy => Some(ArcWord::Center),
-        Plane::Zx | Plane::Yz => (!helix).then_some(ArcWord::Way),
+    arcs: Arcs {
+        // In G18 and G19 the control takes the tool's length along Y and X, unless setting data 42940 says otherwise. CIP needs
+        // no plane; it has no helices.
+        word: |kind, machine| match kind.plane {
+            Some(Plane::Xy) => Some(ArcWord::Center),
+            Some(Plane::Zx | Plane::Yz) if takes_planes(machine) => Some(ArcWord::Center),
+            Some(Plane::Zx | Plane::Yz) | None => (!kind.helix).then_some(ArcWord::Way),
+        },
+        // TURN= is 0 to 999.
+        most_turns: 999,
+        planes: true,
+        directed: true,
     },
     direction: ["A3=", "B3=", "C3="],
     turn: Some(["ORIVECT", "ORIAXES"]),
@@ -142,6 +151,12 @@ pub const DIALECT: Dialect = Dialect {
     write: write::write,
     read: read::read,
 };
+
+/// Whether G18 and G19 are written and read: where the machine file says that they leave the tool's length where it is, and no
+/// tip is led.
+fn takes_planes(machine: &Machine) -> bool {
+    machine.arc_planes && machine.axes.direction().is_none()
+}
 
 /// *NC Programming* 12.19 p.42.
 fn is_name(name: &str) -> bool {

@@ -43,8 +43,8 @@ enum Motion {
 }
 
 /// Codes that state what the IR assumes anyway. Another work offset than G54, or smoothing, is another path.
-const STATE_CODES: [&str; 12] =
-    ["G17", "G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
+const STATE_CODES: [&str; 11] =
+    ["G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
 
 /// What one block says.
 struct Block {
@@ -66,6 +66,8 @@ struct Block {
     second: [Option<(Decimal, [Decimal; COEFFICIENTS])>; 3],
     /// I1 J1 K1, as places.
     way: [Option<i64>; 3],
+    /// TURN.
+    turns: Option<u32>,
     feed: Option<Decimal>,
     starts_spline: bool,
 }
@@ -99,6 +101,8 @@ struct Reader<'m> {
     splinepath: Vec<usize>,
     /// Whether a second curve leads the tool's direction, ORICURVE.
     second: bool,
+    /// G17, G18 or G19.
+    plane: Plane,
     run: Option<Run>,
 }
 
@@ -114,6 +118,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         upath: false,
         splinepath: Vec::new(),
         second: false,
+        plane: Plane::Xy,
         run: None,
     };
     for line in lines {
@@ -198,6 +203,7 @@ impl Reader<'_> {
             direction: [None; 3],
             second: [None; 3],
             way: [None; 3],
+            turns: None,
             feed: None,
             starts_spline: false,
         };
@@ -340,6 +346,10 @@ impl Reader<'_> {
             ("G", Some(1)) => self.set_motion(Motion::Line),
             ("G", Some(2)) => self.set_motion(Motion::Arc(Sense::Clockwise)),
             ("G", Some(3)) => self.set_motion(Motion::Arc(Sense::CounterClockwise)),
+            ("G", Some(17)) => self.plane = Plane::Xy,
+            ("G", Some(18)) => self.take_plane(Plane::Zx, range),
+            ("G", Some(19)) => self.take_plane(Plane::Yz, range),
+            ("TURN", _) => self.turn(value, range, block),
             ("I", _) => block.center[0] = Some(value),
             ("J", _) => block.center[1] = Some(value),
             ("K", _) => block.center[2] = Some(value),
@@ -381,6 +391,9 @@ impl Reader<'_> {
         if !arc && block.center.iter().any(Option::is_some) {
             return self.assembler.error("arc-word", "I J K belong to G2 and G3", whole());
         }
+        if !arc && block.turns.is_some() {
+            return self.assembler.error("arc-word", "TURN belongs to G2 and G3", whole());
+        }
         let by = self.motion == Motion::ArcBy;
         if !by && block.way.iter().any(Option::is_some) {
             return self.assembler.error("arc-word", "I1 J1 K1 belong to CIP", whole());
@@ -399,9 +412,8 @@ impl Reader<'_> {
             Motion::Rapid => self.assembler.rapid(block.named(), span),
             Motion::Line => self.assembler.line(block.named(), line, span),
             Motion::Arc(sense) => {
-                let plane = Plane::Xy;
-                let said =
-                    arc::Said { plane, sense, named: block.named(), offsets: block.center, line, span };
+                let (plane, offsets, turns) = (self.plane, block.center, block.turns.unwrap_or(0));
+                let said = arc::Said { plane, sense, named: block.named(), offsets, turns, line, span };
                 arc::read(&mut self.assembler, &said);
             }
             Motion::ArcBy => self.arc_by(block, line, span),

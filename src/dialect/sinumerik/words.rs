@@ -130,7 +130,8 @@ fn polynomial(input: &str) -> IResult<&str, Word<'_>> {
     alt((old, new)).map(|(axis, values)| Word::Polynomial(axis, values)).parse(input)
 }
 
-/// `assignment = ( axis | "F" | "I" | "J" | "K" | "PL" | "PW" | component | second ), equals, number | "SD", equals, ( "2" | "3" )`, or another name or value
+/// `assignment = ( axis | "F" | "I" | "J" | "K" | "PL" | "PW" | component | second ), equals, number | "SD", equals, ( "2" | "3" )
+///     | "TURN", equals, digits`, or another name or value
 fn assignment(input: &str) -> IResult<&str, Word<'_>> {
     let (rest, (name, value)) = (terminated(name, (space0, char('='), space0)), number).parse(input)?;
     Ok((rest, Word::Address(name, value)))

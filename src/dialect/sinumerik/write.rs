@@ -61,8 +61,13 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A block of fixed words.
+    /// A block of fixed words. It stands in X Y, so that the length of a tool that it calls counts along Z.
     fn block(&mut self, text: &str) {
+        if self.plane.take_if(|plane| *plane != Plane::Xy).is_some() {
+            self.modal.begin("N");
+            self.modal.text(arc::plane_word(Plane::Xy));
+            self.modal.end();
+        }
         if self.modal.machine.text.number_comments || !text.starts_with(';') {
             self.modal.begin("N");
         }
@@ -73,6 +78,7 @@ impl Writer<'_> {
     /// Nothing holds any more.
     fn forget(&mut self) {
         self.modal.forget();
+        self.plane = None;
         self.upath = false;
         self.splinepath.clear();
     }
@@ -183,8 +189,11 @@ impl Writer<'_> {
     }
 
     fn arc(&mut self, arc: &WrittenArc, feed: Option<Decimal>) {
+        self.lead(false);
         match arc.by {
-            ArcBy::Center(center) => arc::write(&mut self.modal, (arc, center), feed, &mut self.plane),
+            ArcBy::Center(circle, turns) => {
+                arc::write(&mut self.modal, arc, (circle, turns), feed, &mut self.plane);
+            }
             ArcBy::Way(way) => self.arc_by(arc, &way, feed),
             // The dialect does not ask for it, so that `quantise` makes none.
             ArcBy::Turn(..) => {}
@@ -193,11 +202,12 @@ impl Writer<'_> {
 
     /// CIP: the end, and a place on the way. AC states it from zero, whatever G90 and G91 do to it.
     fn arc_by(&mut self, arc: &WrittenArc, way: &Units, feed: Option<Decimal>) {
-        let [u, v, _] = arc.plane.axes();
         self.modal.begin("N");
         self.modal.motion("CIP");
-        for i in 0..self.modal.machine.axes.count() {
-            if i == u || i == v || self.modal.position[i] != Some(arc.end[i]) {
+        for i in 0..self.modal.direction.unwrap_or(self.modal.machine.axes.count()) {
+            // Of X Y Z those of the plane.
+            let rests = i < 3 && way[i] == arc.start[i] && arc.end[i] == arc.start[i];
+            if (i < 3 && !rests) || self.modal.position[i] != Some(arc.end[i]) {
                 self.modal.axis(i, arc.end[i]);
             }
         }
@@ -209,6 +219,7 @@ impl Writer<'_> {
             write_units(&mut self.modal.out, place, self.decimals.digits[i], spelling);
             self.modal.text(") ");
         }
+        self.modal.directions(&arc.end);
         self.modal.feed(feed);
         self.modal.reached(&arc.end);
         self.modal.end();

@@ -9,7 +9,7 @@ use super::reader::{Reader, Said};
 use super::statement::{Placed, Statement};
 use super::words::Hand;
 use crate::diagnostic::Diagnostic;
-use crate::geom::arc::{Arc, Plane, Sense};
+use crate::geom::arc::{Arc, Frame, Plane, Sense};
 use crate::source::Span;
 
 /// Below this an arc's start, end, centre and radius are one circle, mm: the last place of three decimals and rounding.
@@ -32,7 +32,7 @@ const TANGENT: f64 = 0.99;
 pub(super) struct Circle {
     /// mm.
     center: [f64; 3],
-    plane: Plane,
+    frame: Frame,
     sense: Sense,
     /// The radius stated, mm.
     radius: Option<f64>,
@@ -47,7 +47,7 @@ pub(super) struct Circle {
 #[derive(Clone, Debug)]
 pub(super) struct Left {
     tangent: [f64; 2],
-    plane: Plane,
+    frame: Frame,
     at: [f64; 3],
 }
 
@@ -59,24 +59,28 @@ pub(super) struct Votes {
     first: Option<Span>,
 }
 
-/// The plane that an axis is square to, and whether it points along the plane's own.
-fn plane_of(axis: [f64; 3]) -> Option<(Plane, bool)> {
+/// The frame of the plane that an axis is square to, and whether its w points along it.
+fn frame_about(axis: [f64; 3]) -> Option<(Frame, bool)> {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !(0.5 < length && length < 2.0) {
         return None;
     }
-    [Plane::Xy, Plane::Zx, Plane::Yz].into_iter().find_map(|plane| {
-        let [u, v, w] = plane.axes();
-        let flat = axis[u].abs() < AXIS_SLACK * length && axis[v].abs() < AXIS_SLACK * length;
-        flat.then_some((plane, 0.0 < axis[w]))
-    })
+    Frame::about(axis, AXIS_SLACK)
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl Reader<'_> {
-    /// The circle of a centre and an axis; none where no plane of the control fits.
+    /// The circle of a centre and an axis; none where that is no direction.
     fn circle_of(&mut self, center: [f64; 3], axis: [f64; 3], hand: Hand, said: &Said<'_>) -> Option<Circle> {
-        let Some((plane, along)) = plane_of(axis) else {
-            self.refuse("arc-plane", "the axis of this arc is not X, Y or Z", said.span);
+        let Some((frame, along)) = frame_about(axis) else {
+            self.error("arc-plane", "the axis of this arc is no direction", said.span);
             return None;
         };
         let sense = match (along, hand) {
@@ -84,7 +88,7 @@ impl Reader<'_> {
             (true, Hand::Left) | (false, Hand::Right) => Sense::Clockwise,
         };
         let center = center.map(|x| x * self.scale);
-        Some(Circle { center, plane, sense, radius: None, sweep: None, by_axis: true, span: said.span })
+        Some(Circle { center, frame, sense, radius: None, sweep: None, by_axis: true, span: said.span })
     }
 
     fn wait(&mut self, circle: Circle) {
@@ -166,35 +170,37 @@ impl Reader<'_> {
         let flat = |i: usize| {
             (start[i] - center[i]).abs() < MISFIT_REFUSED && (toward[i] - center[i]).abs() < MISFIT_REFUSED
         };
-        let plane = match axis {
-            Some(axis) => plane_of(axis).map(|(plane, _)| plane),
-            None if flat(2) => Some(Plane::Xy),
+        // Where the arc goes counter-clockwise about it, (s − c) × t points along the axis.
+        let about = cross(minus(start, center), tangent);
+        let frame = match axis {
+            Some(axis) => frame_about(axis).map(|(frame, _)| frame),
+            None if flat(2) => Some(Plane::Xy.into()),
             None if flat(1) => {
                 // A circle without an axis lies in X Y; in X Z it is that of a lathe.
                 return self.turned(said.span);
             }
-            None => None,
+            // Its plane is that of the centre, the start and the tangent there.
+            None => Frame::about(about, AXIS_SLACK).map(|(frame, _)| frame).filter(|frame| {
+                let [.., height] = frame.local(minus(toward, center));
+                height.abs() < MISFIT_REFUSED
+            }),
         };
-        let Some(plane) = plane else {
-            return self.refuse("arc-plane", "the axis of this arc is not X, Y or Z", said.span);
+        let Some(frame) = frame else {
+            return self.refuse("arc-plane", "where the axis of this arc points it does not say", said.span);
         };
-        let [u, v, w] = plane.axes();
-        // (s − c) × t points along w where the arc goes counter-clockwise.
-        let turn = (start[u] - center[u]) * tangent[v] - (start[v] - center[v]) * tangent[u];
+        let [.., turn] = frame.local(about);
         let sense = if 0.0 < turn { Sense::CounterClockwise } else { Sense::Clockwise };
-        let ray = [toward[u] - center[u], toward[v] - center[v]];
-        let length = (ray[0] * ray[0] + ray[1] * ray[1]).sqrt();
+        let [ray_u, ray_v, _] = frame.local(minus(toward, center));
+        let length = (ray_u * ray_u + ray_v * ray_v).sqrt();
         let radius = radius * self.scale;
         if !(0.0 < length && 0.0 < radius) {
             return unread(self);
         }
-        let mut end = start;
-        end[u] = center[u] + radius * ray[0] / length;
-        end[v] = center[v] + radius * ray[1] / length;
-        end[w] = toward[w];
+        let ([u, v, _], [.., w]) = (frame.local(center), frame.local(toward));
+        let end = frame.global([u + radius * ray_u / length, v + radius * ray_v / length, w]);
         let circle = Circle {
             center,
-            plane,
+            frame,
             sense,
             radius: Some(radius),
             sweep: None,
@@ -215,24 +221,25 @@ impl Reader<'_> {
         };
         let feed = self.feed;
         let Some(feed) = self.per_minute(feed, whole) else { return };
-        let [u, v, w] = circle.plane.axes();
-        let chord =
-            ((end[u] - start[u]) * (end[u] - start[u]) + (end[v] - start[v]) * (end[v] - start[v])).sqrt();
+        let ([su, sv, sw], [eu, ev, height]) = (circle.frame.local(start), circle.frame.local(end));
+        let chord = ((eu - su) * (eu - su) + (ev - sv) * (ev - sv)).sqrt();
         let mut end = end;
         if chord < FULL_CHORD {
-            (end[u], end[v]) = (start[u], start[v]);
+            // Over the start, in a tilted plane to the last bit too where it does not rise.
+            end = match circle.frame.plane() {
+                Some(_) => circle.frame.global([su, sv, height]),
+                None => {
+                    let [.., rise] = circle.frame.axes().map(|axis| axis.map(|x| x * (height - sw)));
+                    std::array::from_fn(|i| start[i] + rise[i])
+                }
+            };
         }
-        let center = [circle.center[u], circle.center[v]];
+        let [u, v, _] = circle.frame.local(circle.center);
         if self.program.stood() != self.program.axis() {
-            return self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
+            return self.turning_arc(span);
         }
-        let arc = match Arc::new(
-            circle.plane,
-            circle.sense,
-            self.program.place(&start),
-            self.program.place(&end),
-            center,
-        ) {
+        let (start, place) = (self.program.place(&start), self.program.place(&end));
+        let mut arc = match Arc::new(circle.frame, circle.sense, start, place, [u, v]) {
             Ok(arc) => arc,
             Err(error) => return self.error("arc", error.to_string(), whole),
         };
@@ -261,44 +268,35 @@ impl Reader<'_> {
                 turns
             }
         };
-        self.turns(&arc, turns as usize, w, feed, whole);
-        let left = Left { tangent: arc.tangent(1.0), plane: circle.plane, at: end };
+        arc = arc.with_turns(turns.max(0.0) as u32);
+        self.program.arc(arc, feed, whole);
+        let left = Left { tangent: arc.tangent(1.0), frame: circle.frame, at: end };
         self.pending = circle.by_axis.then_some(Pending::Left(left));
     }
 
-    /// An arc after whole turns of the same pitch.
-    fn turns(&mut self, arc: &Arc, turns: usize, w: usize, feed: f64, span: Span) {
-        let (start, end) = (arc.start(), arc.end());
-        let sweep = arc.sweep().abs() / (2.0 * std::f64::consts::PI);
-        let per_turn = (end[w] - start[w]) / (turns as f64 + sweep);
-        let mut from = start;
-        for i in 1..=turns {
-            let mut to = start;
-            to[w] = start[w] + per_turn * i as f64;
-            match Arc::new(arc.plane(), arc.sense(), from, to, arc.center()) {
-                Ok(turn) => self.program.arc(turn, feed, span),
-                Err(error) => return self.error("arc", error.to_string(), span),
-            }
-            from = to;
-        }
-        match Arc::new(arc.plane(), arc.sense(), from, end, arc.center()) {
-            Ok(last) => self.program.arc(last, feed, span),
-            Err(error) => self.error("arc", error.to_string(), span),
-        }
+    /// An arc in which the tool turns: how its direction goes along the arc no page says.
+    pub(super) fn turning_arc(&mut self, span: Span) {
+        let message =
+            "an arc in which the tool turns is not compiled: how it turns along the arc no page says";
+        self.push(
+            Diagnostic::refusal("arc-axis", message)
+                .at(span, "")
+                .hint("points on the arc say it, a GOTO with six numbers each"),
+        );
     }
 
     /// A line before an arc votes on its sense.
     fn entered(&mut self, arc: &Arc, span: Span) {
         if let (Some(from), Some(at)) = (self.program.before, self.program.position) {
             let tangent = arc.tangent(0.0);
-            self.votes.count(arc.plane(), tangent, from, at, span);
+            self.votes.count(arc.frame(), tangent, from, at, span);
         }
     }
 
     /// A line after an arc votes on its sense.
     pub(super) fn left(&mut self, left: &Left, to: [f64; 3]) {
         let span = Span::new(self.source, 0..0);
-        self.votes.count(left.plane, left.tangent, left.at, to, span);
+        self.votes.count(left.frame, left.tangent, left.at, to, span);
     }
 
     /// Whether the file contradicts the sense that its system has.
@@ -327,9 +325,9 @@ impl Reader<'_> {
 
 impl Votes {
     /// A line from `from` to `to` beside an arc with this tangent.
-    fn count(&mut self, plane: Plane, tangent: [f64; 2], from: [f64; 3], to: [f64; 3], span: Span) {
-        let [u, v, _] = plane.axes();
-        let line = [to[u] - from[u], to[v] - from[v]];
+    fn count(&mut self, frame: Frame, tangent: [f64; 2], from: [f64; 3], to: [f64; 3], span: Span) {
+        let [u, v, _] = frame.local(minus(to, from));
+        let line = [u, v];
         let length = (line[0] * line[0] + line[1] * line[1]).sqrt();
         let cos = (line[0] * tangent[0] + line[1] * tangent[1]) / length;
         if TANGENT < cos {

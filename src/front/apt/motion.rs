@@ -112,7 +112,7 @@ impl Reader<'_> {
         self.axis_stale = false;
         if axis != self.program.axis() {
             if let Some(Pending::Circle(_)) = &self.pending {
-                self.refuse("arc-axis", "an arc in which the tool turns is not compiled", span);
+                self.turning_arc(span);
                 return false;
             }
             self.program.turn(axis);

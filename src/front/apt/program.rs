@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
+use crate::geom::deviation::Bound;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step};
 use crate::source::Span;
@@ -284,6 +285,6 @@ impl Builder {
         let all = Axes::with_direction();
         let axes = Axes::new(&all.as_slice()[..self.stride()]).ok_or_else(Diagnostics::new)?;
         let program = Program { name, number: 1, axes, steps: self.steps };
-        Ok(Intent { program, tolerance: None, name_span, radius: None, tilt_error: 0.0, warnings })
+        Ok(Intent { program, tolerance: None, name_span, radius: None, tilt_error: Bound::ZERO, warnings })
     }
 }

@@ -204,14 +204,14 @@ mod tests {
     fn circles_are_arcs_in_planes_of_the_machine() {
         let quarter = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 5.0, 0.0], 0.0, 0.25 * TURN);
         let arc = placed(&quarter).arc().unwrap();
-        assert_eq!((arc.plane(), arc.sense()), (Plane::Xy, Sense::CounterClockwise));
+        assert_eq!((arc.plane(), arc.sense()), (Some(Plane::Xy), Sense::CounterClockwise));
         assert!((arc.sweep() - 0.25 * TURN).abs() < 1e-15);
         let back = placed(&quarter.reversed()).arc().unwrap();
         assert_eq!((back.sense(), back.start()), (Sense::Clockwise, arc.end()));
         let full = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 0.0, 5.0], 1.0, 1.0 + TURN);
         let full = placed(&full).arc().unwrap();
         // From X to Z about Y is clockwise in the plane Z X.
-        assert_eq!((full.plane(), full.sense(), full.is_full()), (Plane::Zx, Sense::Clockwise, true));
+        assert_eq!((full.plane(), full.sense(), full.is_full()), (Some(Plane::Zx), Sense::Clockwise, true));
         let tilted = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 4.0, 3.0], 0.0, 1.0);
         assert!(placed(&tilted).arc().is_none());
     }

@@ -18,6 +18,7 @@
 use super::{CutterJob, Infeed, Order, Process, parse};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::geom::deviation::Bound;
 use crate::geom::logcurve::Measure;
 use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Shift, Step};
 use crate::source::{Source, SourceId};
@@ -165,7 +166,7 @@ impl CutterJob {
             tolerance: self.tolerance,
             name_span: self.name_span,
             radius: None,
-            tilt_error: 0.0,
+            tilt_error: Bound::ZERO,
             warnings: Diagnostics::new(),
         }
     }

@@ -15,6 +15,7 @@
 use super::{Job, MEET, Placed, parse};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Bound;
 use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step};
 use crate::source::{SourceId, Sources};
 use crate::units::Position;
@@ -152,7 +153,7 @@ impl Job {
             tolerance: self.tolerance,
             name_span: self.name_span,
             radius: self.radius,
-            tilt_error: 0.0,
+            tilt_error: Bound::ZERO,
             warnings,
         }
     }

@@ -83,3 +83,71 @@ fn chords_of_a_circle_are_off_by_their_sagitta() {
     let found = follow(&path, &curve, 1e-3).unwrap();
     assert!(sag <= found.distance && found.distance < 1.03 * sag + 2e-6, "{sag} {found:?}");
 }
+
+fn lines(points: &[(f64, f64)]) -> Vec<Bezier> {
+    points.windows(2).map(|ends| Bezier::line(at(ends[0].0, ends[0].1), at(ends[1].0, ends[1].1))).collect()
+}
+
+fn parted(p: &[Bezier], c: &[Bezier], tolerance: f64) -> Vec<([usize; 2], f64)> {
+    let rule = Rule { tolerance, direction: None, turn: f64::INFINITY };
+    let all = Stream::new(p.iter().copied(), c.iter().copied(), rule);
+    all.filter(|m| !(m.distance <= tolerance)).map(|m| (m.at, m.distance)).collect()
+}
+
+#[test]
+fn a_path_meets_itself_exactly_and_its_parts_to_rounding() {
+    let path = [quarter(0), quarter(1), Bezier::line(at(-10., 0.), at(-20., 5.))];
+    let rule = Rule { tolerance: 1e-3, direction: None, turn: f64::INFINITY };
+    let all: Vec<Meeting> = Stream::new(path.iter().copied(), path.iter().copied(), rule).collect();
+    assert_eq!(all.len(), 3);
+    assert!(all.iter().all(|m| m.alike && m.distance == 0.0));
+    let halves: Vec<Bezier> =
+        path.iter().flat_map(|piece| [piece.segment(0.0, 0.3), piece.segment(0.3, 1.0)]).collect();
+    let all: Vec<Meeting> = Stream::new(halves.iter().copied(), path.iter().copied(), rule).collect();
+    // 256 ulps of 20 mm, twice: the bound and what was found.
+    assert!(all.iter().all(|m| m.distance < 1.2e-12), "{all:?}");
+    assert_eq!(all.last().map(|m| m.at), Some([5, 2]));
+}
+
+#[test]
+fn a_moved_point_parts_two_lines_at_that_point_alone() {
+    let own = lines(&[(0., 0.), (10., 0.), (20., 0.), (30., 0.), (40., 0.), (50., 0.)]);
+    let moved = lines(&[(0., 0.), (10., 0.), (20., 2.), (30., 0.), (40., 0.), (50., 0.)]);
+    let found = parted(&own, &moved, 0.01);
+    assert!(found.iter().all(|([i, j], _)| [1, 2].contains(i) && [1, 2].contains(j)), "{found:?}");
+    let farthest = found.iter().map(|(_, d)| *d).fold(0.0, f64::max);
+    assert!((2.0..2.1).contains(&farthest), "{farthest}");
+    // A point that is left out of a straight line is none.
+    let fewer = lines(&[(0., 0.), (20., 0.), (50., 0.)]);
+    assert!(parted(&own, &fewer, 1e-9).is_empty());
+    // Joints that neither shares with the other: together again on a piece.
+    let other = lines(&[(0., 0.), (13., 0.), (21., 2.), (27., 0.), (35., 0.), (50., 0.)]);
+    let found = parted(&own, &other, 0.01);
+    assert!(!found.is_empty() && found.iter().all(|([_, j], _)| [1, 2].contains(j)), "{found:?}");
+}
+
+#[test]
+fn a_part_run_twice_is_a_difference() {
+    let once = lines(&[(0., 0.), (10., 0.), (10., 5.), (0., 5.)]);
+    let twice = lines(&[(0., 0.), (10., 0.), (0., 0.), (10., 0.), (10., 5.), (0., 5.)]);
+    for (p, c) in [(&once, &twice), (&twice, &once)] {
+        let farthest = parted(p, c, 0.01).iter().map(|(_, d)| *d).fold(0.0, f64::max);
+        // Half the way back at least, whatever the map.
+        assert!(5.0 <= farthest, "{farthest}");
+    }
+    // An end that is missing, and one that is too much.
+    assert!(!parted(&once[..2], &once, 0.01).is_empty());
+    assert!(!parted(&once, &once[..2], 0.01).is_empty());
+}
+
+#[test]
+fn a_way_back_along_the_same_line_is_a_difference() {
+    let straight = lines(&[(0., 0.), (20., 0.), (30., 0.)]);
+    let back = lines(&[(0., 0.), (10., 0.), (6., 0.), (20., 0.), (30., 0.)]);
+    for (p, c) in [(&straight, &back), (&back, &straight)] {
+        // Whoever waits half way is 2 mm off, and no map does better.
+        let farthest = parted(p, c, 1.0).iter().map(|(_, d)| *d).fold(0.0, f64::max);
+        assert!(2.0 <= farthest, "{farthest}");
+        assert!(!parted(p, c, 1.9).is_empty());
+    }
+}

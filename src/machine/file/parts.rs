@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
 use crate::geom::rotation::Order;
 use crate::machine::keys::{
-    AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile, TextFile,
+    ArcsFile, AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile, TextFile,
 };
 use crate::machine::template::Template;
 use crate::machine::{
@@ -179,6 +179,22 @@ impl Reader {
         })
     }
 
+    /// Whether arcs may choose another plane than X Y.
+    pub(super) fn arc_planes(
+        &mut self,
+        file: ArcsFile,
+        dialect: &Dialect,
+        base: Option<&Machine>,
+    ) -> Option<bool> {
+        if let Some(planes) = file.planes.as_ref().filter(|planes| *planes.get_ref())
+            && !dialect.arcs.planes
+        {
+            let message = format!("{} has no words that choose the plane of an arc", dialect.name);
+            self.error("arc-planes", message, planes.span());
+        }
+        self.or(file.planes.map(Spanned::into_inner), base.map(|b| b.arc_planes), "arcs.planes")
+    }
+
     /// How the direction of the tool is stated and turned.
     pub(super) fn orientation(
         &mut self,
@@ -211,6 +227,13 @@ impl Reader {
             let message = format!("{} has no words for a second curve", dialect.name);
             self.error("second-curve", message, second.span());
         }
+        if let Some(arcs) = file.arcs.as_ref().filter(|arcs| *arcs.get_ref())
+            && !dialect.arcs.directed
+        {
+            let message =
+                format!("in {} the words of the tool's direction are those of an arc's centre", dialect.name);
+            self.error("directed-arcs", message, arcs.span());
+        }
         let turn = match &file.turn {
             None => self.or(None, base.map(|b| b.turn), "orientation.turn")?,
             Some(word) => match word.get_ref().as_str() {
@@ -239,6 +262,11 @@ impl Reader {
             second_curve: self.or(second, base.map(|b| b.second_curve), "orientation.second_curve")?,
             plane_order: self.or(plane_order, base.map(|b| b.plane_order), "orientation.plane_order")?,
             length: self.or(length, base.map(|b| b.length), "orientation.length")?,
+            arcs: self.or(
+                file.arcs.as_ref().map(|arcs| *arcs.get_ref()),
+                base.map(|b| b.arcs),
+                "orientation.arcs",
+            )?,
             safe_height: file
                 .safe_height
                 .as_ref()

@@ -15,11 +15,13 @@
 
 use crate::decimal::{Decimal, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::arc::{Arc, Plane};
+use crate::geom::arc::Arc;
+use crate::geom::bezier::Bezier;
+use crate::geom::deviation::Bound;
 use crate::geom::direction;
 use crate::geom::nurbs::Nurbs;
 use crate::geom::rotation::Rotation;
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Polyline, Step};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, Position};
@@ -33,8 +35,9 @@ const PLACE: usize = 3;
 /// Directions this near to each other are one, radians: a unit of the sixth decimal.
 const SAME: f64 = 1.0e-6;
 
-/// How far an axis of an arc may be from one of the plane's: what rounding leaves of a right angle.
-const SQUARE: f64 = 1.0e-9;
+/// The angles of a plane are rounded, so that an arc that is square to the tool is hardly ever quite so: it is taken for one
+/// where that moves it by less than this, mm.
+const SQUARE: f64 = 1.0e-4;
 
 type All = Vec<Located<f64, Curve>>;
 
@@ -60,8 +63,17 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     }
     let upright = machine.with_axes(&axes)?;
     let retracts = upright.home(Z).is_some() && !machine.frame.home.is_empty();
-    let mut walk =
-        Walk { first, machine, retracts, all: Vec::new(), plane: None, at: None, called: false, error: 0.0 };
+    let mut walk = Walk {
+        first,
+        machine,
+        retracts,
+        all: Vec::new(),
+        plane: None,
+        at: None,
+        called: false,
+        told: false,
+        error: Bound::ZERO,
+    };
     let steps = &intent.program.steps;
     for located in steps {
         if walk.step(located)?.is_none() {
@@ -76,7 +88,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     intent.program.steps = all;
     intent.program.axes = axes;
     intent.tilt_error = error;
-    let (degrees, allowed) = (error * DEGREES, machine.orientation.tolerance);
+    let (degrees, allowed) = (error.rad * DEGREES, machine.orientation.tolerance);
     if degrees <= allowed {
         return Ok(());
     }
@@ -109,10 +121,11 @@ fn turns_at_rapid(steps: &[Located<f64, Curve>], first: usize) -> bool {
                 Curve::Lines(line) => keeps(&line.start) && line.points().all(|p| keeps(&p)),
                 Curve::Arc(arc) => keeps(&arc.start()) && keeps(&arc.end()),
                 Curve::Nurbs(nurbs) => nurbs.points().iter().all(keeps),
-                // CL data has none of these.
-                Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
-                    false
+                Curve::Polynomial(pieces) => {
+                    pieces.iter().all(|piece| piece.control_points().iter().all(keeps))
                 }
+                // No input has these in five axes.
+                Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => false,
             }
         }
         Step::Comment(_)
@@ -149,7 +162,9 @@ struct Walk<'m> {
     /// Where the input takes the tip to be, in the work's own coordinates.
     at: Option<[f64; 3]>,
     called: bool,
-    error: f64,
+    /// Whether no section began since the last move: its first rapid names every axis.
+    told: bool,
+    error: Bound,
 }
 
 impl Walk<'_> {
@@ -179,19 +194,24 @@ impl Walk<'_> {
             Step::Cut(cut) => {
                 let Some(plane) = &mut self.plane else { return Ok(None) };
                 let Some(curve) = plane.counted(&cut.curve) else { return Ok(None) };
+                if let Curve::Arc(arc) = &cut.curve {
+                    self.error.mm = self.error.mm.max(plane.arc(arc).1);
+                }
                 let (end, top) = extent(&curve);
                 plane.top = plane.top.max(top);
                 self.at = Some(plane.rotation.out(end));
+                self.told = true;
                 self.push(Step::Cut(Cut { feed: cut.feed, role: cut.role, curve }), span);
             }
             // The plane is left by way of it.
             Step::Home(_) if self.plane.is_some() => self.leave(span),
-            Step::Comment(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => self.push(located.step.clone(), span),
+            Step::Comment(_) => {
+                self.told = false;
+                self.push(located.step.clone(), span);
+            }
+            Step::Spindle(_) | Step::Coolant | Step::Home(_) | Step::Shift(_) | Step::Auxiliary(_) => {
+                self.push(located.step.clone(), span)
+            }
         }
         Ok(Some(()))
     }
@@ -204,22 +224,24 @@ impl Walk<'_> {
             self.enter(asked, span)?;
         }
         let Some(plane) = &mut self.plane else { return Ok(()) };
-        self.error = self.error.max(direction::angle(&plane.rotation.axis(), &asked));
+        let turned = direction::angle(&plane.rotation.axis(), &asked);
+        self.error.rad = self.error.rad.max(turned);
         let to = plane.rotation.into_frame(place);
         plane.top = plane.top.max(to[Z]);
-        let from = self.at.filter(|_| !turns).map(|at| plane.rotation.into_frame(at));
+        let from = self.at.filter(|_| !turns && self.told).map(|at| plane.rotation.into_frame(at));
         self.at = Some(place);
+        self.told = true;
         if turns {
             self.push(Step::Rapid((0..PLACE).map(|i| (i, to[i])).collect()), span);
             return Ok(());
         }
         let digits = self.machine.digits.linear;
         let moves = |i: &usize| from.is_none_or(|from| !same(from[*i], to[*i], digits));
-        let mut targets: Vec<(usize, f64)> = (0..PLACE).filter(moves).map(|i| (i, to[i])).collect();
-        if targets.is_empty() {
-            targets.push((0, to[0]));
+        let targets: Vec<(usize, f64)> = (0..PLACE).filter(moves).map(|i| (i, to[i])).collect();
+        // Where nothing moves nothing is written.
+        if !targets.is_empty() {
+            self.push(Step::Rapid(targets), span);
         }
-        self.push(Step::Rapid(targets), span);
         Ok(())
     }
 
@@ -288,7 +310,12 @@ fn extent(curve: &Curve) -> ([f64; 3], f64) {
             let top = points.iter().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
             (points.last().map_or([0.0; 3], place), top)
         }
-        Curve::Polynomial(_) | Curve::Logarithmic(_) | Curve::Formula(_) => ([0.0; 3], f64::NEG_INFINITY),
+        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
+            let points = || pieces.iter().flat_map(Bezier::control_points);
+            let top = points().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
+            (points().last().map_or([0.0; 3], place), top)
+        }
+        Curve::Logarithmic(_) => ([0.0; 3], f64::NEG_INFINITY),
     }
 }
 
@@ -307,34 +334,29 @@ impl Tilted {
                 counted.lines.clone_from(&line.lines);
                 Curve::Lines(counted)
             }
-            Curve::Arc(arc) => Curve::Arc(self.arc(arc, place)?),
+            Curve::Arc(arc) => Curve::Arc(self.arc(arc).0),
             Curve::Nurbs(nurbs) => Curve::Nurbs(Nurbs::mapped(nurbs, place)),
-            Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
-                return None;
+            Curve::Polynomial(pieces) => {
+                let counted = |piece: &Bezier| {
+                    let mut piece = *piece;
+                    piece.points.iter_mut().for_each(|point| *point = place(point));
+                    piece
+                };
+                Curve::Polynomial(pieces.iter().map(counted).collect())
             }
+            Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
         })
     }
-}
 
-impl Tilted {
-    /// An arc as the plane counts it; none where its axis is none of the plane's.
-    fn arc(&self, arc: &Arc, place: impl Fn(&Position) -> Position) -> Option<Arc> {
-        let [u, v, w] = arc.plane().axes();
-        let mut axis = [0.0; 3];
-        axis[w] = 1.0;
-        let axis = self.rotation.into_frame(axis);
-        let plane = [Plane::Xy, Plane::Zx, Plane::Yz]
-            .into_iter()
-            .find(|plane| 1.0 - axis[plane.axes()[2]].abs() <= SQUARE)?;
-        let [u_new, v_new, w_new] = plane.axes();
-        let sense = if 0.0 < axis[w_new] { arc.sense() } else { arc.sense().reversed() };
-        let mut center = arc.start();
-        [center[u], center[v]] = arc.center();
-        let (start, mut end, center) = (place(&arc.start()), place(&arc.end()), place(&center));
-        if arc.is_full() {
-            // A whole turn ends where it starts, whatever rounding made of a helix.
-            (end[u_new], end[v_new]) = (start[u_new], start[v_new]);
-        }
-        Arc::new(plane, sense, start, end, [center[u_new], center[v_new]]).ok()
+    /// An arc as the plane counts it, and how far that is from it at most, mm: about an axis that is θ off, its places are
+    /// up to Rθ out of the plane, and as far from the straight rise between its ends.
+    fn arc(&self, arc: &Arc) -> (Arc, f64) {
+        let back = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation.0[j][i]));
+        let plain = arc.mapped_along(|p| [p[0], p[1], p[2], 0.0, 0.0, 0.0]);
+        let counted = plain.turned(&back, SQUARE / arc.radius());
+        let [.., asked] = arc.frame().axes();
+        let [.., axis] = counted.frame().axes();
+        let off = direction::angle(&self.rotation.into_frame(asked), &axis);
+        (counted, 2.0 * arc.radius() * off.min(std::f64::consts::PI - off))
     }
 }

@@ -5,7 +5,7 @@ use super::{Block, Reader, signed};
 use crate::decimal::Decimal;
 use crate::dialect::arc;
 use crate::geom::arc::{Plane, Sense};
-use crate::ir::{self, ArcBy, WrittenArc};
+use crate::ir::{ArcBy, Circle, WrittenArc, turned_end};
 use crate::source::Span;
 use std::ops::Range;
 
@@ -37,7 +37,8 @@ impl Reader<'_, '_> {
         let end = self.assembler.target(block.named());
         let start = self.assembler.start(&end, span);
         let sense = arc::counted_sense(self.assembler.machine, Plane::Xy, sense);
-        let arc = WrittenArc { plane: Plane::Xy, sense, start, end, by: ArcBy::Center(center), line };
+        let by = ArcBy::Center(Circle { plane: Plane::Xy, sense, center }, 0);
+        let arc = WrittenArc { start, end, by, line };
         arc::add(&mut self.assembler, arc, &end, span);
     }
 
@@ -102,10 +103,10 @@ impl Reader<'_, '_> {
             return self.assembler.error("helix", "CP ends by IPA and IZ and does not move at rapid", head);
         }
         let forth = if sense == Sense::CounterClockwise { Some(turn) } else { turn.times(-1) };
-        let whole = Decimal::new(360, 0);
-        let Some(degrees) = forth.filter(|d| d.compare(Decimal::ZERO).is_gt() && d.compare(whole).is_le())
+        let most = Decimal::new(360 * i64::from(self.assembler.machine.dialect.arcs.most_turns), 0);
+        let Some(degrees) = forth.filter(|d| d.compare(Decimal::ZERO).is_gt() && d.compare(most).is_le())
         else {
-            let message = "IPA has the sign of DR and at most 360 degrees here: a block a turn is read";
+            let message = format!("IPA has the sign of DR, and turns by {most} degrees at most");
             return self.assembler.error("helix", message, head);
         };
         if block.feed.is_some() {
@@ -119,17 +120,12 @@ impl Reader<'_, '_> {
             return self.assembler.error("number-range", "IZ is out of range", head);
         };
         end[2] = height;
-        let sweep = ir::sweep(sense, degrees);
-        let Some(end) = ir::turned_end(Plane::Xy, &digits, (&start, &end), center, sweep) else {
+        let circle = Circle { plane: Plane::Xy, sense, center };
+        let Some(end) = turned_end(&digits, (&start, &end), &circle, degrees) else {
             return self.assembler.error("number-range", "the end of this helix is out of range", head);
         };
-        let by = ArcBy::Turn(center, degrees);
-        arc::add(
-            &mut self.assembler,
-            WrittenArc { plane: Plane::Xy, sense, start, end, by, line },
-            &end,
-            span,
-        );
+        let by = ArcBy::Turn(circle, degrees);
+        arc::add(&mut self.assembler, WrittenArc { start, end, by, line }, &end, span);
         self.loose = [true; 2];
     }
 
