@@ -210,7 +210,7 @@ impl Walk<'_> {
                 self.push(located.step.clone(), span);
             }
             Step::Spindle(_) | Step::Coolant | Step::Home(_) | Step::Shift(_) | Step::Auxiliary(_) => {
-                self.push(located.step.clone(), span)
+                self.push(located.step.clone(), span);
             }
         }
         Ok(Some(()))
