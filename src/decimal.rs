@@ -280,6 +280,7 @@ pub enum NumberError {
 ///
 /// # Errors
 /// There is no digit, or there are more than a decimal holds.
+#[inline]
 pub fn read_decimal(text: &[u8], comma: bool) -> Result<(Decimal, usize), NumberError> {
     let scanned = scan(text, comma);
     if scanned.count == 0 {

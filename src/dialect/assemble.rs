@@ -150,16 +150,17 @@ impl<'m> Assembler<'m> {
         let turned = |units: i64| if self.reversed[axis] { units.checked_neg() } else { Some(units) };
         let units = counted.and_then(turned).and_then(|units| units.checked_add(self.shift[axis]));
         if units.is_none() {
-            let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
-            self.error(
-                "digits-too-many",
-                format!(
-                    "{name} {value} has more decimals than the {digits} that the machine file gives this axis"
-                ),
-                range,
-            );
+            self.too_many_digits(axis, value, range);
         }
         units
+    }
+
+    fn too_many_digits(&mut self, axis: usize, value: Decimal, range: std::ops::Range<usize>) {
+        let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
+        let message = format!(
+            "{name} {value} has more decimals than the {digits} that the machine file gives this axis"
+        );
+        self.error("digits-too-many", message, range);
     }
 
     /// The number that stands in the text for a position.

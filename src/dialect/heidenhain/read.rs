@@ -19,7 +19,7 @@
 mod arcs;
 mod closing;
 
-use super::words::{Word, cut, is_continuation, word};
+use super::words::{Word, coordinate, cut, is_continuation, word};
 use crate::decimal::{Decimal, Spelling};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
@@ -277,6 +277,12 @@ impl<'t> Reader<'t, '_> {
         let mut rest = code.trim_ascii_start();
         while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
+            // Most words are coordinates, and go no way round through a `Word`.
+            if let Ok((after, (letter, value))) = coordinate(rest) {
+                self.coordinate(letter, value, at..at + (rest.len() - after.len()), block);
+                rest = after.trim_ascii_start();
+                continue;
+            }
             match word(rest) {
                 Ok((after, word)) => {
                     self.word(&word, at..at + (rest.len() - after.len()), block);
@@ -290,16 +296,16 @@ impl<'t> Reader<'t, '_> {
     }
 
     #[inline]
+    fn coordinate(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let Some(axis) = self.assembler.letter(letter) else { return self.axis_unknown(letter, range) };
+        if let Some(units) = self.assembler.units(axis, value, range.clone()) {
+            self.name_axis(block, (axis, letter), units, range);
+        }
+    }
+
     fn word(&mut self, word: &Word<'_>, range: Range<usize>, block: &mut Block) {
         match *word {
-            Word::Coordinate(letter, value) => {
-                let Some(axis) = self.assembler.letter(letter) else {
-                    return self.axis_unknown(letter, range);
-                };
-                if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                    self.name_axis(block, (axis, letter), units, range);
-                }
-            }
+            Word::Coordinate(letter, value) => self.coordinate(letter, value, range, block),
             Word::Step(letter, value) => self.step(letter, value, range, block),
             Word::Turn(value) => self.turn(value, range, block),
             Word::FeedParameter(_) if block.feed.is_some() || block.rapid => {

@@ -8,7 +8,7 @@ mod path;
 mod spline;
 mod state;
 
-use super::words::{Word, word};
+use super::words::{Word, address, word};
 use super::write::SECOND;
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -210,6 +210,12 @@ impl Reader<'_> {
         let mut rest = code.trim_ascii_start();
         while !rest.is_empty() {
             let at = start + (code.len() - rest.len());
+            // Most words are addresses, and go no way round through a `Word`.
+            if let Ok((after, (name, value))) = address(rest) {
+                self.addressed(name, value, at..at + (rest.len() - after.len()), &mut block);
+                rest = after.trim_ascii_start();
+                continue;
+            }
             match word(rest) {
                 Ok((after, word)) => {
                     let range = at..at + (rest.len() - after.len());
@@ -235,21 +241,22 @@ impl Reader<'_> {
         self.moved(&block, line, span);
     }
 
+    /// A name and a number.
+    #[inline]
+    fn addressed(&mut self, name: &str, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let axis = match name.as_bytes() {
+            [letter] => self.assembler.letter(*letter),
+            _ => self.assembler.axis(name),
+        };
+        let Some(axis) = axis else { return self.address(name, value, range, block) };
+        if let Some(units) = self.assembler.units(axis, value, range.clone()) {
+            self.name_axis(block, axis, units, range);
+        }
+    }
+
     fn word(&mut self, word: Word<'_>, range: Range<usize>, block: &mut Block) {
         match word {
-            Word::Address(name, value) => {
-                let axis = match name.as_bytes() {
-                    [letter] => self.assembler.letter(*letter),
-                    _ => self.assembler.axis(name),
-                };
-                if let Some(axis) = axis {
-                    if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                        self.name_axis(block, axis, units, range);
-                    }
-                } else {
-                    self.address(name, value, range, block);
-                }
-            }
+            Word::Address(name, value) => self.addressed(name, value, range, block),
             Word::FeedParameter(number) => {
                 if let Some(value) = self.assembler.parameter(number, range.clone()) {
                     self.address("F", value, range, block);

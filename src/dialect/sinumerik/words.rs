@@ -33,6 +33,7 @@ pub(super) enum Word<'t> {
 /// `word = address | polynomial | feed_parameter | shortest | way | assignment | call | keyword`
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
+    let address = address.map(|(name, value)| Word::Address(name, value));
     alt((address, polynomial, feed_parameter, shortest, way, assignment, call, keyword)).parse(input)
 }
 
@@ -61,7 +62,7 @@ fn way(input: &str) -> IResult<&str, Word<'_>> {
 
 /// `address = ( axis_letter | "F" | "I" | "J" | "K" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1
 #[inline]
-fn address(input: &str) -> IResult<&str, Word<'_>> {
+pub(super) fn address(input: &str) -> IResult<&str, (&str, Decimal)> {
     let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
     let bytes = input.as_bytes();
     if !bytes.first().is_some_and(u8::is_ascii_alphabetic) {
@@ -71,22 +72,24 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
     if rest.trim_ascii_start().starts_with('=') {
         return failed();
     }
-    Ok((rest, Word::Address(&input[..1], value)))
+    Ok((rest, (&input[..1], value)))
 }
 
-/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits ), [ exponent ]` with
-/// `exponent = "EX", [ "-" ], digits`
+/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits ), [ exponent ]`
 #[inline]
 fn number(input: &str) -> IResult<&str, Decimal> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
     let (value, length) = read_decimal(input.as_bytes(), false).map_err(|_| failed())?;
     let rest = &input[length..];
-    if !rest.starts_with("EX") {
-        return Ok((rest, value));
-    }
+    if rest.starts_with("EX") { with_exponent(rest, value) } else { Ok((rest, value)) }
+}
+
+/// `exponent = "EX", [ "-" ], digits`
+fn with_exponent(input: &str, value: Decimal) -> IResult<&str, Decimal> {
+    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
     let (rest, exponent) =
         preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
-            .parse(rest)?;
+            .parse(input)?;
     let exponent: i32 = exponent.parse().map_err(|_| failed())?;
     scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
 }
