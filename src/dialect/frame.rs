@@ -24,7 +24,7 @@ pub struct Frame<'m> {
     shifting: Option<Shifting>,
     assign: Template,
     /// What the lines that may stand behind the header begin and end with.
-    outlines: Vec<(String, String)>,
+    outlines: Vec<Outline>,
     started: bool,
     name: Option<String>,
 }
@@ -64,8 +64,7 @@ impl<'m> Frame<'m> {
         };
         let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
         let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
-        frame.outlines =
-            all.map(Template::outline).map(|(start, end)| (start.to_owned(), end.to_owned())).collect();
+        frame.outlines = all.map(Outline::new).collect();
         frame
     }
 
@@ -169,8 +168,7 @@ impl<'m> Frame<'m> {
             }
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins and ends like one.
-        if !self.outlines.iter().any(|(start, end)| begins_with(text, start) && text.ends_with(end.as_str()))
-        {
+        if !self.outlines.iter().any(|outline| outline.fits(text)) {
             return Met::Other;
         }
         if let Some(template) = self.end.first().copied()
@@ -405,12 +403,29 @@ impl<'m> Frame<'m> {
     }
 }
 
-/// Whether a line begins with a text; mostly the first byte decides.
-#[inline]
-fn begins_with(line: &str, start: &str) -> bool {
-    match (start.as_bytes().first(), line.as_bytes().first()) {
-        (Some(expected), Some(found)) if expected != found => false,
-        _ => line.starts_with(start),
+/// What a line of the machine file begins and ends with, whatever is filled in.
+struct Outline {
+    /// The first and the last byte, where it has them: mostly these decide.
+    first: Option<u8>,
+    last: Option<u8>,
+    start: String,
+    end: String,
+}
+
+impl Outline {
+    fn new(template: &Template) -> Outline {
+        let (start, end) = template.outline();
+        let (first, last) = (start.bytes().next(), end.bytes().next_back());
+        Outline { first, last, start: start.to_owned(), end: end.to_owned() }
+    }
+
+    #[inline]
+    fn fits(&self, line: &str) -> bool {
+        let line_bytes = line.as_bytes();
+        (self.first.is_none() || self.first == line_bytes.first().copied())
+            && (self.last.is_none() || self.last == line_bytes.last().copied())
+            && line.starts_with(self.start.as_str())
+            && line.ends_with(self.end.as_str())
     }
 }
 
