@@ -122,7 +122,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
-        assembler: Assembler::new(machine, source),
+        assembler: Assembler::new(machine, source, text),
         motion: Motion::None,
         run: None,
         remarks: Vec::new(),

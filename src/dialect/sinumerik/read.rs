@@ -112,7 +112,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
-        assembler: Assembler::new(machine, source),
+        assembler: Assembler::new(machine, source, text),
         motion: Motion::None,
         degree: 3,
         upath: false,
