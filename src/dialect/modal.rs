@@ -84,11 +84,13 @@ impl<'m> Modal<'m> {
     }
 
     /// Writes text.
+    #[inline]
     pub fn text(&mut self, text: &str) {
         self.out.extend_from_slice(text.as_bytes());
     }
 
     /// Starts a block with its number, where the machine numbers its blocks.
+    #[inline]
     pub fn begin(&mut self, prefix: &str) {
         let step = self.machine.text.number_step;
         if step != 0 {
@@ -100,6 +102,7 @@ impl<'m> Modal<'m> {
     }
 
     /// Ends a block.
+    #[inline]
     pub fn end(&mut self) {
         if self.out.last() == Some(&b' ') {
             self.out.pop();
@@ -108,6 +111,7 @@ impl<'m> Modal<'m> {
     }
 
     /// Ends a line.
+    #[inline]
     pub fn end_line(&mut self) {
         self.text(self.machine.text.line_end.text());
     }
@@ -264,19 +268,20 @@ impl<'m> Modal<'m> {
     /// The words of the axes that a straight move moves; the first where it moves none, since a block needs one. The tool's
     /// direction is never modal.
     #[inline]
-    pub fn moved_axes(&mut self, point: &Units, count: usize) {
+    pub fn moved_axes(&mut self, point: &[i64]) {
+        let places = self.direction.unwrap_or(point.len());
         let mut moved = false;
-        for i in 0..self.direction.unwrap_or(count) {
-            if self.position[i] != Some(point[i]) {
-                self.axis(i, point[i]);
+        for (i, units) in point.iter().enumerate().take(places) {
+            if self.position[i] != Some(*units) {
+                self.axis(i, *units);
                 moved = true;
             }
         }
         if !moved {
             self.axis(0, point[0]);
         }
-        for i in self.direction.unwrap_or(count)..count {
-            self.axis(i, point[i]);
+        for (i, units) in point.iter().enumerate().skip(places) {
+            self.axis(i, *units);
         }
     }
 
@@ -302,9 +307,10 @@ impl<'m> Modal<'m> {
     }
 
     /// Takes a point as reached.
-    pub fn reached(&mut self, point: &Units) {
-        for i in 0..self.machine.axes.count() {
-            self.position[i] = Some(point[i]);
+    #[inline]
+    pub fn reached(&mut self, point: &[i64]) {
+        for (known, units) in self.position.iter_mut().zip(point).take(self.machine.axes.count()) {
+            *known = Some(*units);
         }
     }
 }

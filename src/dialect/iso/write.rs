@@ -166,17 +166,17 @@ impl Writer<'_> {
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         self.modal.lines(points);
-        for (i, point) in points.points().enumerate() {
+        for (i, point) in points.units.chunks_exact(points.stride).enumerate() {
             let rate = points.rates.get(i);
             self.modal.begin("N");
             self.modal.motion("G1");
             self.modal.inverse(rate.is_some());
-            self.modal.moved_axes(&point, points.stride);
+            self.modal.moved_axes(point);
             match rate {
                 Some(rate) => self.modal.rate(*rate),
                 None => self.modal.feed(feed),
             }
-            self.modal.reached(&point);
+            self.modal.reached(point);
             self.modal.end();
         }
         self.modal.lines_end();
