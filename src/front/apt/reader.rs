@@ -161,14 +161,15 @@ impl<'s> Reader<'s> {
     /// Reads a text.
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
-        for record in Records::new(text) {
+        let mut records = Records::new(text);
+        while let Some(record) = &records.next() {
             match record.kind {
                 Kind::Code => {
                     // Points are by far the most, and most of them come in a row.
                     let plain = goto && self.spline.is_none() && !self.ended;
                     match statement::goto(&record.text).filter(|_| plain) {
-                        Some((numbers, count)) => self.goto(&numbers[..count], &record),
-                        None => self.code(&record),
+                        Some((numbers, count)) => self.goto(&numbers[..count], record),
+                        None => self.code(record),
                     }
                 }
                 Kind::Remark => self.remark(&record.text, record.span(self.source)),
