@@ -46,11 +46,15 @@ enum Motion {
 const STATE_CODES: [&str; 11] =
     ["G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
 
+/// a₂ … a₅ of each axis.
+type Coefficients = [[Decimal; COEFFICIENTS]; MAX_AXES];
+
 /// What one block says.
 struct Block {
     named: [(usize, i64); MAX_AXES],
     count: usize,
-    coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
+    /// Those of PO[X] and so on; few blocks have any.
+    coefficients: Option<Box<Coefficients>>,
     has_polynomial: bool,
     /// The axes that PO[…] names.
     divides: [bool; MAX_AXES],
@@ -75,6 +79,15 @@ struct Block {
 impl Block {
     fn named(&self) -> &[(usize, i64)] {
         &self.named[..self.count]
+    }
+
+    fn coefficients(&self) -> &Coefficients {
+        const NONE: Coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
+        self.coefficients.as_deref().unwrap_or(&NONE)
+    }
+
+    fn coefficients_mut(&mut self) -> &mut Coefficients {
+        self.coefficients.get_or_insert_default()
     }
 }
 
@@ -193,7 +206,7 @@ impl Reader<'_> {
         let mut block = Block {
             named: [(0, 0); MAX_AXES],
             count: 0,
-            coefficients: [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES],
+            coefficients: None,
             has_polynomial: false,
             divides: [false; MAX_AXES],
             denominator: None,
@@ -294,7 +307,7 @@ impl Reader<'_> {
                 };
                 if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
                     self.name_axis(block, axis, units, range);
-                    for (own, a) in block.coefficients[axis].iter_mut().zip(&values[1..]) {
+                    for (own, a) in block.coefficients_mut()[axis].iter_mut().zip(&values[1..]) {
                         *own = self.assembler.coefficient(axis, *a);
                     }
                     block.has_polynomial = true;
@@ -465,7 +478,7 @@ impl Reader<'_> {
                 coefficients,
                 divides: block.divides,
             });
-            let coefficients = block.coefficients;
+            let coefficients = *block.coefficients();
             let start = run.blocks.last().map_or(run.start, |last| last.end);
             let own = PolynomialBlock { pl, end: target, coefficients, denominator, line };
             if let Some((id, message)) = denominator_fault(&self.assembler, &own, &start, block.named()) {
