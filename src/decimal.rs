@@ -337,6 +337,7 @@ pub fn scan(text: &[u8], comma: bool) -> Scanned {
 }
 
 /// The digits of a number that matter, and how many of them stand behind the point; none where these are too many.
+#[cold]
 fn significant(number: &[u8]) -> Option<(u64, usize)> {
     let point = number.iter().position(|byte| matches!(byte, b'.' | b',')).unwrap_or(number.len());
     let (whole, fraction) = (&number[..point], number.get(point + 1..).unwrap_or_default());

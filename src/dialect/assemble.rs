@@ -171,6 +171,7 @@ impl<'m> Assembler<'m> {
         units
     }
 
+    #[cold]
     fn too_many_digits(&mut self, axis: usize, value: Decimal, range: std::ops::Range<usize>) {
         let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
         let message = format!(

@@ -85,6 +85,7 @@ fn number(input: &str) -> IResult<&str, Decimal> {
 }
 
 /// `exponent = "EX", [ "-" ], digits`
+#[cold]
 fn with_exponent(input: &str, value: Decimal) -> IResult<&str, Decimal> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
     let (rest, exponent) =
