@@ -81,18 +81,17 @@ fn number(input: &str) -> IResult<&str, Decimal> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
     let (value, length) = read_decimal(input.as_bytes(), false).map_err(|_| failed())?;
     let rest = &input[length..];
-    if rest.starts_with("EX") { with_exponent(rest, value) } else { Ok((rest, value)) }
+    if !rest.starts_with("EX") {
+        return Ok((rest, value));
+    }
+    let (rest, exponent) = exponent(rest)?;
+    scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
 }
 
 /// `exponent = "EX", [ "-" ], digits`
 #[cold]
-fn with_exponent(input: &str, value: Decimal) -> IResult<&str, Decimal> {
-    let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
-    let (rest, exponent) =
-        preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
-            .parse(input)?;
-    let exponent: i32 = exponent.parse().map_err(|_| failed())?;
-    scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
+fn exponent(input: &str) -> IResult<&str, i32> {
+    preceded(tag("EX"), map_res(recognize((opt(char('-')), digit1)), str::parse)).parse(input)
 }
 
 /// value · 10^exponent, where it can be held.
