@@ -11,19 +11,17 @@
 //! A [`Step::Comment`] starts a section: writers forget all modal state there, so that a program can be restarted.
 
 mod arc;
+mod curve;
 mod passed;
 
 pub use arc::{ArcBy, Circle, WrittenArc, sweep, turned_end};
+pub use curve::{Curve, Described, Logarithmic, Method, Polyline, ThroughKind};
 pub use passed::Passed;
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
-use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
-use crate::geom::expr::curve::Formula;
-use crate::geom::logcurve::{LogCurve, Measure};
-use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 use std::borrow::Borrow;
@@ -272,139 +270,6 @@ impl Intent {
                 ..
             } => None,
         })
-    }
-}
-
-/// A shape that can be evaluated exactly.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Curve {
-    /// Straight lines.
-    Lines(Polyline),
-    /// An arc or a helix.
-    Arc(Arc),
-    /// Polynomial pieces, joined end to start.
-    Polynomial(Vec<Bezier>),
-    /// A B-spline, rational where its weights differ.
-    Nurbs(Nurbs),
-    /// The control's own curve through points: known at the points only.
-    Through(ThroughKind, Polyline),
-    /// The path of a conical cutter's flute.
-    Logarithmic(Logarithmic),
-    /// Coordinates as expressions in a parameter.
-    Formula(Described),
-}
-
-/// A curve by expressions, and the pieces that stand for it wherever pieces are needed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Described {
-    /// The expressions.
-    pub formula: std::sync::Arc<Formula>,
-    /// Quintic pieces.
-    pub pieces: Vec<Bezier>,
-    /// How far they are from it at most, mm or degrees, each axis.
-    pub bound: Position,
-}
-
-impl Curve {
-    /// The pieces that it is made of, end to start; none of a logarithmic curve or an arc, nor of one that only the control
-    /// knows.
-    pub fn pieces(&self) -> Vec<Bezier> {
-        match self {
-            Curve::Lines(line) => {
-                let mut from = line.start;
-                line.points().map(|to| Bezier::line(std::mem::replace(&mut from, to), to)).collect()
-            }
-            Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => pieces.clone(),
-            Curve::Nurbs(nurbs) => nurbs.beziers().map(|(piece, _)| piece).collect(),
-            Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_) => Vec::new(),
-        }
-    }
-}
-
-/// A logarithmic curve and how it is to be followed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Logarithmic {
-    /// The curve.
-    pub curve: LogCurve,
-    /// How.
-    pub method: Method,
-    /// The instruction step Δl of odd-even steps; none: the largest ≤ 0.2 that holds the tolerance.
-    pub dl: Option<f64>,
-    /// Whole cycles until X reaches or passes the end.
-    pub overrun: bool,
-    /// Whether it is run from its end to its start.
-    pub back: bool,
-    /// What its feed is a speed of.
-    pub along: Measure,
-}
-
-/// How a logarithmic curve is followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Odd-even for lines along a curve, direct for splines and for what is straight anyway.
-    Auto,
-    /// The paper's steps: the intent is the polyline through those points.
-    OddEven,
-    /// The curve itself is the intent.
-    Direct,
-}
-
-/// Which curve a control makes of points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThroughKind {
-    /// Sinumerik ASPLINE.
-    Akima,
-    /// Sinumerik CSPLINE.
-    Cubic,
-    /// Mazak G06.1, fine spline interpolation.
-    Fine,
-}
-
-/// A start and points, in one flat block of numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Polyline {
-    /// Where it starts.
-    pub start: Position,
-    /// How many numbers a point has.
-    pub stride: usize,
-    /// The points after the start.
-    pub values: Vec<f64>,
-    /// How often a minute each line could be made, where that is its feed; otherwise empty.
-    pub rates: Vec<f64>,
-    /// The line of the input that each point came from; empty where the points were made.
-    pub lines: Vec<u32>,
-}
-
-impl Polyline {
-    /// A polyline of no points yet.
-    pub fn new(start: Position, stride: usize) -> Polyline {
-        Polyline { start, stride, values: Vec::new(), rates: Vec::new(), lines: Vec::new() }
-    }
-
-    /// The same line from its end to its start.
-    #[must_use]
-    pub fn reversed(&self) -> Polyline {
-        let mut points: Vec<Position> = std::iter::once(self.start).chain(self.points()).collect();
-        points.reverse();
-        let mut line = Polyline::new(points[0], self.stride);
-        points[1..].iter().for_each(|point| line.push(point));
-        line.rates = self.rates.iter().rev().copied().collect();
-        line
-    }
-
-    /// Adds a point.
-    pub fn push(&mut self, point: &Position) {
-        self.values.extend_from_slice(&point[..self.stride]);
-    }
-
-    /// How many points there are after the start.
-    pub fn count(&self) -> usize {
-        self.values.len() / self.stride
-    }
-
-    /// The points after the start.
-    pub fn points(&self) -> impl Iterator<Item = Position> + '_ {
-        self.values.chunks_exact(self.stride).map(padded)
     }
 }
 

@@ -21,7 +21,6 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::frame::with_named_axes;
-use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
 use crate::ir::{
     ArcBy, Curve, Cut, Decimals, Intent, Located, Polyline, Program, Role, Step, Written, WrittenPoints,
@@ -248,10 +247,9 @@ impl Translation<'_> {
             Written::Polynomial(polynomial) => {
                 let mut start = polynomial.start;
                 let piece = |block: &crate::ir::PolynomialBlock| {
-                    let mut piece: Bezier = block.to_bezier(&self.decimals.digits, &start);
+                    let piece = block.to_bezier(&self.decimals.digits, &start);
                     start = block.end;
-                    piece.points.iter_mut().for_each(|point| *point = self.place(point));
-                    piece
+                    piece.mapped(|point| self.place(point))
                 };
                 (Role::Path, Curve::Polynomial(polynomial.blocks.iter().map(piece).collect()))
             }

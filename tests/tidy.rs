@@ -121,7 +121,9 @@ fn the_library_does_no_input_or_output() {
 
 #[test]
 fn intermediate_types_are_not_serialised() {
-    assert!(!code(&folder("src/ir.rs")).contains("serde"));
+    for path in files(&folder("src/ir"), "rs").into_iter().chain([folder("src/ir.rs")]) {
+        assert!(!code(&path).contains("serde"), "{}", path.display());
+    }
 }
 
 #[test]

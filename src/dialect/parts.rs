@@ -167,37 +167,29 @@ impl<'p> Walk<'p, '_> {
                 }
                 Step::Coolant => self.fill(&frame.coolant, &[]),
                 Step::Auxiliary(auxiliary) => {
-                    let tool = self.tool.to_string();
-                    let mut values = vec![("tool", tool)];
-                    match auxiliary {
+                    let mut values = vec![("tool", self.tool.to_string())];
+                    let part = match auxiliary {
+                        Auxiliary::CoolantStop
+                        | Auxiliary::SpindleStop
+                        | Auxiliary::Stop
+                        | Auxiliary::OptionalStop => None,
                         Auxiliary::Dwell(seconds) => {
                             values.push(("seconds", unsigned(*seconds, self.machine)));
+                            None
                         }
+                        Auxiliary::TipControl => Some(Part::TipControl(true)),
+                        Auxiliary::TipControlEnd => Some(Part::TipControl(false)),
                         Auxiliary::Plane(angles) => {
                             let spelled = angles.map(|angle| spelled(angle, self.machine));
                             values.extend(["first", "second", "third"].into_iter().zip(spelled));
+                            Some(Part::Plane)
                         }
-                        Auxiliary::CoolantStop
-                        | Auxiliary::SpindleStop
-                        | Auxiliary::Stop
-                        | Auxiliary::OptionalStop
-                        | Auxiliary::TipControl
-                        | Auxiliary::TipControlEnd
-                        | Auxiliary::PlaneEnd => {}
-                    }
+                        Auxiliary::PlaneEnd => Some(Part::Plane),
+                    };
                     let values: Vec<(&str, &str)> =
                         values.iter().map(|(name, value)| (*name, value.as_str())).collect();
                     self.fill(frame.auxiliary(auxiliary), &values);
-                    match auxiliary {
-                        Auxiliary::TipControl => self.parts.push(Part::TipControl(true)),
-                        Auxiliary::TipControlEnd => self.parts.push(Part::TipControl(false)),
-                        Auxiliary::Plane(_) | Auxiliary::PlaneEnd => self.parts.push(Part::Plane),
-                        Auxiliary::CoolantStop
-                        | Auxiliary::SpindleStop
-                        | Auxiliary::Stop
-                        | Auxiliary::OptionalStop
-                        | Auxiliary::Dwell(_) => {}
-                    }
+                    self.parts.extend(part);
                 }
                 Step::Home(axis) => {
                     let word = home_word(*axis, self.machine);

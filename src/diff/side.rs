@@ -97,11 +97,7 @@ impl Part<'_> {
                     Bezier::line(std::mem::replace(&mut from, to), to)
                 }))
             }
-            Shape::Pieces(pieces, _) => Box::new(pieces.iter().map(move |piece| {
-                let mut piece = *piece;
-                piece.points.iter_mut().for_each(|p| *p = placed(p));
-                piece
-            })),
+            Shape::Pieces(pieces, _) => Box::new(pieces.iter().map(move |piece| piece.mapped(placed))),
         }
     }
 

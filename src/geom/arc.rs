@@ -28,6 +28,7 @@ mod frame;
 pub use frame::{Frame, Plane, Sense};
 
 use super::elementary;
+use super::rotation::Rotation;
 use crate::units::{MAX_AXES, Position};
 use frame::direction;
 
@@ -148,13 +149,11 @@ impl Arc {
         self
     }
 
-    /// The same arc in a frame that is turned: `rotation` times each of its places in X Y Z. Where its axis is within `slack`
+    /// The same arc turned: the rotation of each of its places in X Y Z. Where its axis is within `slack`
     /// radians of one of that frame it is an arc of that plane, and its places are off by up to `slack` times its radius.
     #[must_use]
-    pub fn turned(&self, rotation: &[[f64; 3]; 3], slack: f64) -> Arc {
-        let out = |p: [f64; 3]| -> [f64; 3] {
-            std::array::from_fn(|i| (0..3).map(|j| rotation[i][j] * p[j]).sum())
-        };
+    pub fn turned(&self, rotation: &Rotation, slack: f64) -> Arc {
+        let out = |p: [f64; 3]| rotation.out(p);
         let place = |p: &Position| {
             let [x, y, z] = out([p[0], p[1], p[2]]);
             let mut place = *p;

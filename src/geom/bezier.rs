@@ -38,6 +38,14 @@ impl Bezier {
         Bezier::new(&[from, to])
     }
 
+    /// The piece with every control point mapped, its weights as they are: the same piece in other coordinates, where the map is
+    /// affine.
+    #[must_use]
+    pub fn mapped(mut self, map: impl Fn(&Position) -> Position) -> Bezier {
+        self.points.iter_mut().for_each(|point| *point = map(point));
+        self
+    }
+
     /// P_0.
     pub fn start(&self) -> Position {
         self.points[0]

@@ -132,6 +132,12 @@ impl Rotation {
         if SINGULAR < sine { angles } else { [degrees(sign * r[k][j], r[j][j]), angles[1], 0.0] }
     }
 
+    /// The rotation back: Rᵀ.
+    #[must_use]
+    pub fn inverse(&self) -> Rotation {
+        Rotation(std::array::from_fn(|i| std::array::from_fn(|j| self.0[j][i])))
+    }
+
     /// The turned axis Z′.
     pub fn axis(&self) -> [f64; 3] {
         [self.0[0][2], self.0[1][2], self.0[2][2]]

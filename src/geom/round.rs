@@ -63,6 +63,7 @@ mod tests {
     use super::*;
     use crate::geom::arc::{Plane, Sense};
     use crate::geom::elementary::{atan, tan};
+    use crate::geom::rotation::Rotation;
 
     #[test]
     fn other_coordinates_go_along_within_the_bound() {
@@ -85,7 +86,7 @@ mod tests {
             Arc::new(Plane::Xy, Sense::CounterClockwise, start, end, [0.0, 0.0]).unwrap().with_turns(2);
         // Turned by the 3-4-5 triangle about X: exact but for roundings of 10 mm.
         let r = [[1.0, 0.0, 0.0], [0.0, 0.8, -0.6], [0.0, 0.6, 0.8]];
-        let arc = flat.turned(&r, 0.0);
+        let arc = flat.turned(&Rotation(r), 0.0);
         assert_eq!(arc.plane(), None);
         let (found, bounds) = pieces(&arc);
         let (expected, flat_bounds) = pieces(&flat);

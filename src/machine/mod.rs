@@ -138,6 +138,11 @@ impl Machine {
         Decimal::round(home, self.axis_digits()[i])
     }
 
+    /// Whether axis `i` can retract to a clear place in machine coordinates.
+    pub fn retracts(&self, i: usize) -> bool {
+        self.home(i).is_some() && !self.frame.home.is_empty()
+    }
+
     /// Whether programs say their number.
     pub fn has_number(&self) -> bool {
         says(&self.frame.header, "number")

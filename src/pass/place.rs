@@ -9,12 +9,12 @@ mod plane;
 mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
-use crate::ir::{
-    Auxiliary, Curve, Cut, Described, Intent, Located, Logarithmic, Polyline, Role, Shift, Step,
-};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
 use crate::machine::Machine;
 use crate::units::{Axes, Axis, DEGREES, Kind, Position};
+
+/// The axis that retracts before a tool turns: the third.
+const Z: usize = 2;
 
 /// The intent as this machine counts it: its axes' names, its homes, its work offsets.
 ///
@@ -53,7 +53,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
 /// Leaves out retractions to a home that the machine file does not state.
 fn homes(intent: &mut Intent, machine: &Machine) {
     intent.program.steps.retain(|located| match located.step {
-        Step::Home(axis) => machine.home(axis).is_some() && !machine.frame.home.is_empty(),
+        Step::Home(axis) => machine.retracts(axis),
         Step::Comment(_)
         | Step::Tool(_)
         | Step::Spindle(_)
@@ -101,7 +101,7 @@ fn over_the_work(intent: &mut Intent) {
                         }
                     }
                     (Some(axis), curve) => {
-                        if let Some(start) = start(curve) {
+                        if let Some((start, _)) = curve.ends() {
                             over(axis, &start);
                             let mut line = Polyline::new(start, count);
                             line.push(&start);
@@ -124,19 +124,6 @@ fn over_the_work(intent: &mut Intent) {
     *steps = all;
 }
 
-/// Where a curve starts; none of one that has no places of its own.
-fn start(curve: &Curve) -> Option<Position> {
-    match curve {
-        Curve::Lines(line) | Curve::Through(_, line) => Some(line.start),
-        Curve::Arc(arc) => Some(arc.start()),
-        Curve::Nurbs(nurbs) => nurbs.points().first().copied(),
-        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
-            pieces.first().map(Bezier::start)
-        }
-        Curve::Logarithmic(_) => None,
-    }
-}
-
 /// From its home the tool goes over the work before it goes down: the rapids of the linear axes that the first section
 /// makes in clear air are made once more before it.
 fn position_at_home(intent: &mut Intent) {
@@ -145,18 +132,34 @@ fn position_at_home(intent: &mut Intent) {
     let Some(first) = steps.iter().position(|located| matches!(located.step, Step::Comment(_))) else {
         return;
     };
-    let home = steps[..first].iter().find_map(|located| match located.step {
-        Step::Home(axis) => Some(axis),
+    // The axis that is at home where the section starts: nothing brought it back to the work, and nothing was cut.
+    let home = steps[..first].iter().fold(None, |home, located| match &located.step {
+        Step::Home(axis) => Some(*axis),
+        Step::Rapid(targets) => home.filter(|home| targets.iter().all(|(axis, _)| axis != home)),
+        Step::Cut(_) | Step::Auxiliary(Auxiliary::Plane(_)) => None,
         Step::Comment(_)
         | Step::Tool(_)
         | Step::Spindle(_)
         | Step::Coolant
         | Step::Shift(_)
-        | Step::Auxiliary(_)
-        | Step::Rapid(_)
-        | Step::Cut(_) => None,
+        | Step::Auxiliary(_) => home,
     });
     let Some(home) = home else { return };
+    // Where the section itself goes over the work first, there is nothing to do before it.
+    let next = steps[first..].iter().find_map(|located| match &located.step {
+        Step::Rapid(targets) => Some(targets.iter().any(|(axis, _)| *axis == home)),
+        Step::Cut(_) => Some(false),
+        Step::Comment(_)
+        | Step::Tool(_)
+        | Step::Spindle(_)
+        | Step::Coolant
+        | Step::Home(_)
+        | Step::Shift(_)
+        | Step::Auxiliary(_) => None,
+    });
+    if next != Some(true) {
+        return;
+    }
     let moves = steps[first..].iter().take_while(|located| located.step.cut().is_none());
     let over: Vec<Located<f64, Curve>> = moves
         .filter(|located| match &located.step {

@@ -366,8 +366,7 @@ impl<'m> Builder<'m> {
     }
 
     fn bezier(&mut self, piece: &Bezier, line: u32) {
-        let mut piece = *piece;
-        piece.points.iter_mut().for_each(|point| *point = self.in_work(point));
+        let piece = piece.mapped(|point| self.in_work(point));
         let points = piece.control_points();
         let reach =
             std::array::from_fn(|i| points.iter().map(|p| (p[i] - points[0][i]).abs()).fold(0.0, f64::max));
@@ -382,7 +381,7 @@ impl<'m> Builder<'m> {
     }
 
     fn arc(&mut self, arc: &Arc, line: u32) {
-        let arc = self.plane.map_or(*arc, |plane| arc.turned(&plane.0, 0.0));
+        let arc = self.plane.map_or(*arc, |plane| arc.turned(&plane, 0.0));
         let (low, high) = arc.range();
         self.piece(Shape::Arc(Box::new(arc)), &std::array::from_fn(|i| high[i] - low[i]), None, line);
     }

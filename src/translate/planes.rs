@@ -2,14 +2,16 @@
 //! that the program is written for next tilts planes of its own or leads the tip.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
 use crate::geom::rotation::{Order, Rotation};
-use crate::ir::{Auxiliary, Curve, Cut, Located, Polyline, Program, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Located, Program, Step};
 use crate::source::Span;
 use crate::units::{Axes, Position};
 
 /// How many coordinates a place has.
 const PLACE: usize = 3;
+
+/// The axis that comes down to the work.
+const Z: usize = 2;
 
 /// Counts the places of a program with tilted planes in the coordinates of the work. A rapid names some of the plane's axes; the
 /// place that it leads to is known once all were named, and the tool goes there at once. From its home it goes over the work
@@ -25,11 +27,12 @@ pub(super) fn count_back(program: &mut Program<f64, Curve>, order: Order) -> Res
         let message = "tilted planes are translated where X, Y and Z are all that moves";
         return Err(Diagnostic::error("plane-translated", message).at(span, "").into());
     }
-    let mut back = Back { rotation: Rotation::NONE, at: [None; PLACE] };
+    let mut back = Back { rotation: Rotation::NONE, at: [None; PLACE], unmet: None };
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in std::mem::take(&mut program.steps) {
         steps.extend(back.step(step, order, span)?.map(|step| Located { step, span }));
     }
+    back.met()?;
     program.steps = steps;
     program.axes = own;
     Ok(())
@@ -43,6 +46,8 @@ struct Back {
     rotation: Rotation,
     /// Where the tip is, as the plane counts it.
     at: [Option<f64>; PLACE],
+    /// A rapid that leads to no place that is known yet.
+    unmet: Option<Span>,
 }
 
 impl Back {
@@ -53,6 +58,13 @@ impl Back {
         [x, y, z, i, j, k]
     }
 
+    /// Refuses a rapid that would be lost: it leads to no place of the work.
+    fn met(&self) -> Result<(), Diagnostics> {
+        let Some(span) = self.unmet else { return Ok(()) };
+        let message = "this rapid leads to no place of the work: nothing says where its other axes are";
+        Err(Diagnostic::error("plane-translated", message).at(span, "").into())
+    }
+
     fn step(
         &mut self,
         step: Step<f64, Curve>,
@@ -61,22 +73,34 @@ impl Back {
     ) -> Result<Option<Step<f64, Curve>>, Diagnostics> {
         Ok(match step {
             Step::Auxiliary(Auxiliary::Plane(angles)) => {
-                *self = Back { rotation: Rotation::of(order, angles), at: [None; PLACE] };
+                self.met()?;
+                *self = Back { rotation: Rotation::of(order, angles), at: [None; PLACE], unmet: None };
                 None
             }
             Step::Auxiliary(Auxiliary::PlaneEnd) => {
-                *self = Back { rotation: Rotation::NONE, at: [None; PLACE] };
+                self.met()?;
+                *self = Back { rotation: Rotation::NONE, at: [None; PLACE], unmet: None };
                 None
             }
             Step::Home(axis) => {
+                self.met()?;
                 self.at[axis] = None;
                 Some(Step::Home(axis))
             }
             Step::Rapid(targets) => {
                 for (axis, to) in targets {
+                    if axis == Z && (self.at[0].is_none() || self.at[1].is_none()) {
+                        // Over the work comes first wherever the program is written next.
+                        self.unmet = Some(span);
+                        self.met()?;
+                    }
                     self.at[axis] = Some(to);
                 }
-                let [Some(x), Some(y), Some(z)] = self.at else { return Ok(None) };
+                let [Some(x), Some(y), Some(z)] = self.at else {
+                    self.unmet = self.unmet.or(Some(span));
+                    return Ok(None);
+                };
+                self.unmet = None;
                 let place = self.place(&[x, y, z, 0.0, 0.0, 0.0]);
                 Some(Step::Rapid(place.into_iter().enumerate().collect()))
             }
@@ -85,7 +109,7 @@ impl Back {
                     let message = "this path starts at a place that nothing says since the plane was tilted";
                     return Err(Diagnostic::error("start-unknown", message).at(span, "").into());
                 }
-                let Some((curve, end)) = self.curve(&cut.curve) else {
+                let (Some(curve), Some((_, end))) = (self.curve(&cut.curve), cut.curve.ends()) else {
                     let message = "a control's own spline in a tilted plane is not translated";
                     return Err(Diagnostic::error("plane-translated", message).at(span, "").into());
                 };
@@ -101,36 +125,20 @@ impl Back {
         })
     }
 
-    /// A curve of the plane in the coordinates of the work, and where it ends in the plane; none of one that only the control
-    /// knows.
-    fn curve(&self, curve: &Curve) -> Option<(Curve, Position)> {
+    /// A curve of the plane in the coordinates of the work; none of one that only the control knows.
+    fn curve(&self, curve: &Curve) -> Option<Curve> {
         let place = |p: &Position| self.place(p);
         Some(match curve {
-            Curve::Lines(line) => {
-                let mut own = Polyline::new(place(&line.start), 2 * PLACE);
-                let mut end = line.start;
-                for point in line.points() {
-                    own.push(&place(&point));
-                    end = point;
-                }
-                own.rates.clone_from(&line.rates);
-                own.lines.clone_from(&line.lines);
-                (Curve::Lines(own), end)
-            }
+            Curve::Lines(line) => Curve::Lines(line.mapped(2 * PLACE, place)),
             Curve::Arc(arc) => {
                 let [i, j, k] = self.rotation.axis();
-                let own = arc.turned(&self.rotation.0, 0.0);
-                (Curve::Arc(own.mapped_along(|p| [p[0], p[1], p[2], i, j, k])), arc.end())
+                let turned = arc.turned(&self.rotation, 0.0);
+                Curve::Arc(turned.mapped_along(|p| [p[0], p[1], p[2], i, j, k]))
             }
             Curve::Polynomial(pieces) => {
-                let turned = |piece: &Bezier| {
-                    let mut piece = *piece;
-                    piece.points.iter_mut().for_each(|point| *point = place(point));
-                    piece
-                };
-                (Curve::Polynomial(pieces.iter().map(turned).collect()), pieces.last()?.end())
+                Curve::Polynomial(pieces.iter().map(|piece| piece.mapped(place)).collect())
             }
-            Curve::Nurbs(nurbs) => (Curve::Nurbs(nurbs.mapped(place)), *nurbs.points().last()?),
+            Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
             Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
         })
     }

@@ -22,14 +22,22 @@ mod planes;
 mod splines;
 mod statements;
 
-use crate::support::folder;
+use crate::support::{folder, machine};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::ir::Intent;
 use splinepost::machine::Machine;
-use splinepost::source::{Source, Sources};
-use splinepost::{Options, Output, compile, front};
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::{Options, Output, compile, front, verify_program};
 use std::fs;
 use std::path::PathBuf;
+
+/// Proves a program against CL data.
+fn verified(input: &str, text: &str, machine: &Machine) -> Result<(), Diagnostics> {
+    let mut sources = Sources::new(Source::new("input.cl", input));
+    let id = sources.push(Source::new("program", text));
+    let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
+    verify_program(&sources, language, id, machine, &Options::default()).map(|_| ())
+}
 
 /// The inputs under `fixtures/apt`, by their paths.
 fn cases() -> Vec<PathBuf> {

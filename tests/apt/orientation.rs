@@ -1,17 +1,13 @@
 //! The direction of the tool: five axes in every dialect.
 
-use super::{cases, input, program};
+use super::{cases, input, machine, program, verified};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::geom::elementary;
 use splinepost::machine::Machine;
 use splinepost::pass::check;
 use splinepost::source::{Source, SourceId, Sources};
-use splinepost::{Options, Output, compile, front, verify_program};
+use splinepost::{Options, Output, compile, front};
 use std::fs;
-
-fn machine(text: &str) -> Machine {
-    crate::support::machine(text)
-}
 
 /// The cases of five axes, by name and text.
 fn tilted() -> Vec<(String, String)> {
@@ -33,13 +29,6 @@ fn in_motion(text: &str, machine: &Machine, motion: &str) -> Result<Output, Diag
     let options = Options { motion, ..Options::default() };
     let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
     compile(&sources, language, machine, &options).map_err(|failure| failure.diagnostics)
-}
-
-fn verified(input: &str, text: &str, machine: &Machine) -> Result<(), Diagnostics> {
-    let mut sources = Sources::new(Source::new("input.cl", input));
-    let id = sources.push(Source::new("program", text));
-    let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
-    verify_program(&sources, language, id, machine, &Options::default()).map(|_| ())
 }
 
 fn square(x: f64) -> f64 {

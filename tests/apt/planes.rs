@@ -1,19 +1,13 @@
 //! 3+2 axes: the text of each dialect is counted back by the words of its control, with rotations of its own.
 
-use super::{cases, input, program};
+use super::{cases, input, machine, program, verified};
 use splinepost::Output;
-use splinepost::diagnostic::Diagnostics;
 use splinepost::geom::elementary::{cos, sin};
 use splinepost::machine::Machine;
-use splinepost::source::{Source, SourceId, Sources};
-use splinepost::{Options, front, verify_program};
+use splinepost::source::SourceId;
 use std::fs;
 
 const DIALECTS: [&str; 3] = ["sinumerik", "heidenhain", "mazak"];
-
-fn machine(text: &str) -> Machine {
-    crate::support::machine(text)
-}
 
 fn default(dialect: &str) -> Machine {
     machine(&format!("extends = \"{dialect}\""))
@@ -27,13 +21,6 @@ fn case() -> String {
 
 fn compiled(text: &str, machine: &Machine) -> Output {
     program("nx", text, machine).unwrap_or_else(|errors| panic!("{}: {errors:?}", machine.name))
-}
-
-fn verified(input: &str, text: &str, machine: &Machine) -> Result<(), Diagnostics> {
-    let mut sources = Sources::new(Source::new("input.cl", input));
-    let id = sources.push(Source::new("program", text));
-    let language = front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");
-    verify_program(&sources, language, id, machine, &Options::default()).map(|_| ())
 }
 
 type Matrix = [[f64; 3]; 3];
@@ -360,4 +347,21 @@ fn lines_of_a_plane_say_its_angles_and_the_length() {
     );
     assert_eq!(told("[orientation]\nplane_order = \"xxz\"\n"), "plane-order");
     assert_eq!(told("[orientation]\nplane_order = \"abc\"\n"), "plane-order");
+}
+
+/// Between a cut and the remark behind it nothing moves that the input does not have: a tool that is down goes nowhere at rapid.
+#[test]
+fn nothing_moves_before_a_remark_that_was_not_asked() {
+    let input = "UNITS/MM\nLOADTL/1\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/200,MMPM\nGOTO/0,0,-5\n\
+        GOTO/20,0,-5\nPPRINT/SECOND\nRAPID\nGOTO/20,0,50\nRAPID\nGOTO/80,30,50\nRAPID\nGOTO/80,30,2\nGOTO/80,30,-5\nFINI\n";
+    let tilted = input.replace("GOTO/0,0,50\n", "GOTO/0,0,50,0,-0.6,0.8\n");
+    for (dialect, cut) in [("sinumerik", "X20"), ("heidenhain", " L X+20"), ("mazak", "X20.")] {
+        for input in [input, tilted.as_str()] {
+            let text = program("iso", input, &default(dialect)).expect("a program").text;
+            let bare = unnumbered(&text);
+            let lines: Vec<&str> = bare.lines().map(|line| line.trim_start_matches("N ")).collect();
+            let remark = lines.iter().position(|line| line.contains("SECOND")).expect("the remark");
+            assert_eq!(lines[remark - 1].split(" F").next(), Some(cut), "{text}");
+        }
+    }
 }

@@ -50,12 +50,7 @@ fn directed(axis: &[f64; 3]) -> impl Iterator<Item = (usize, f64)> + use<> {
 fn upright(curve: &Curve) -> Curve {
     let place = |p: &Position| joined(&[p[0], p[1], p[2]], &UPRIGHT);
     match curve {
-        Curve::Lines(line) => {
-            let mut directed = Polyline::new(place(&line.start), 2 * AXES);
-            line.points().for_each(|point| directed.push(&place(&point)));
-            directed.lines.clone_from(&line.lines);
-            Curve::Lines(directed)
-        }
+        Curve::Lines(line) => Curve::Lines(line.mapped(2 * AXES, place)),
         Curve::Arc(arc) => Curve::Arc(arc.mapped_along(place)),
         Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
         // CL data has none of these.

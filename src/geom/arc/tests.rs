@@ -193,7 +193,7 @@ fn a_turned_arc_runs_through_turned_places() {
     ] {
         for end in [end, placed(frame, 5.0, 1.0, 4.0)] {
             let own = Arc::new(frame, Sense::Clockwise, start, end, [1.0, 1.0]).unwrap();
-            let turned = own.turned(&rotation, 1e-12);
+            let turned = own.turned(&Rotation(rotation), 1e-12);
             assert_eq!(turned.plane(), plane);
             assert_eq!(turned.is_full(), own.is_full());
             assert_eq!(turned.turns(), own.turns());

@@ -13,21 +13,17 @@
 //! The angles are chosen in the decimals that the text has, and places are counted in the plane of these angles. So no
 //! rounding moves a place; the tool's direction alone is off, by half a unit of the last decimal or so, and that is stated.
 
+use super::Z;
 use crate::decimal::{Decimal, round_units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
-use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
 use crate::geom::direction;
-use crate::geom::nurbs::Nurbs;
 use crate::geom::rotation::Rotation;
-use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Polyline, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Step};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, Position};
-
-/// The third axis: along the tool.
-const Z: usize = 2;
 
 /// How many coordinates a place has.
 const PLACE: usize = 3;
@@ -61,8 +57,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     if !turns_at_rapid(&intent.program.steps, first) {
         return Ok(());
     }
-    let upright = machine.with_axes(&axes)?;
-    let retracts = upright.home(Z).is_some() && !machine.frame.home.is_empty();
+    let retracts = machine.with_axes(&axes)?.retracts(Z);
     let mut walk = Walk {
         first,
         machine,
@@ -193,13 +188,11 @@ impl Walk<'_> {
             }
             Step::Cut(cut) => {
                 let Some(plane) = &mut self.plane else { return Ok(None) };
-                let Some(curve) = plane.counted(&cut.curve) else { return Ok(None) };
-                if let Curve::Arc(arc) = &cut.curve {
-                    self.error.mm = self.error.mm.max(plane.arc(arc).1);
-                }
-                let (end, top) = extent(&curve);
-                plane.top = plane.top.max(top);
-                self.at = Some(plane.rotation.out(end));
+                let Some((curve, off)) = plane.counted(&cut.curve) else { return Ok(None) };
+                let Some((_, [x, y, z, ..])) = curve.ends() else { return Ok(None) };
+                self.error.mm = self.error.mm.max(off);
+                plane.top = plane.top.max(curve.greatest(Z));
+                self.at = Some(plane.rotation.out([x, y, z]));
                 self.told = true;
                 self.push(Step::Cut(Cut { feed: cut.feed, role: cut.role, curve }), span);
             }
@@ -292,68 +285,33 @@ fn same(a: f64, b: f64, digits: u8) -> bool {
     round_units(a, digits) == round_units(b, digits)
 }
 
-/// Where a curve ends, and how high it goes at most.
-fn extent(curve: &Curve) -> ([f64; 3], f64) {
-    let place = |p: &Position| [p[0], p[1], p[2]];
-    match curve {
-        Curve::Lines(line) | Curve::Through(_, line) => {
-            let (mut end, mut top) = (line.start, line.start[Z]);
-            for point in line.points() {
-                top = top.max(point[Z]);
-                end = point;
-            }
-            (place(&end), top)
-        }
-        Curve::Arc(arc) => (place(&arc.end()), arc.range().1[Z]),
-        Curve::Nurbs(nurbs) => {
-            let points = nurbs.points();
-            let top = points.iter().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
-            (points.last().map_or([0.0; 3], place), top)
-        }
-        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
-            let points = || pieces.iter().flat_map(Bezier::control_points);
-            let top = points().map(|p| p[Z]).fold(f64::NEG_INFINITY, f64::max);
-            (points().last().map_or([0.0; 3], place), top)
-        }
-        Curve::Logarithmic(_) => ([0.0; 3], f64::NEG_INFINITY),
-    }
-}
-
 impl Tilted {
-    /// A curve as the plane counts it; none where no word of a control fits it.
-    fn counted(&self, curve: &Curve) -> Option<Curve> {
+    /// A curve as the plane counts it, and how far that is from it at most, mm; none where no word of a control fits it.
+    fn counted(&self, curve: &Curve) -> Option<(Curve, f64)> {
         let place = |p: &Position| {
             let [x, y, z] = self.rotation.into_frame([p[0], p[1], p[2]]);
             [x, y, z, 0.0, 0.0, 0.0]
         };
-        Some(match curve {
-            Curve::Lines(line) => {
-                let mut counted = Polyline::new(place(&line.start), PLACE);
-                line.points().for_each(|point| counted.push(&place(&point)));
-                counted.rates.clone_from(&line.rates);
-                counted.lines.clone_from(&line.lines);
-                Curve::Lines(counted)
+        let counted = match curve {
+            Curve::Lines(line) => Curve::Lines(line.mapped(PLACE, place)),
+            Curve::Arc(arc) => {
+                let (arc, off) = self.arc(arc);
+                return Some((Curve::Arc(arc), off));
             }
-            Curve::Arc(arc) => Curve::Arc(self.arc(arc).0),
-            Curve::Nurbs(nurbs) => Curve::Nurbs(Nurbs::mapped(nurbs, place)),
+            Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
             Curve::Polynomial(pieces) => {
-                let counted = |piece: &Bezier| {
-                    let mut piece = *piece;
-                    piece.points.iter_mut().for_each(|point| *point = place(point));
-                    piece
-                };
-                Curve::Polynomial(pieces.iter().map(counted).collect())
+                Curve::Polynomial(pieces.iter().map(|piece| piece.mapped(place)).collect())
             }
             Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
-        })
+        };
+        Some((counted, 0.0))
     }
 
     /// An arc as the plane counts it, and how far that is from it at most, mm: about an axis that is θ off, its places are
     /// up to Rθ out of the plane, and as far from the straight rise between its ends.
     fn arc(&self, arc: &Arc) -> (Arc, f64) {
-        let back = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation.0[j][i]));
         let plain = arc.mapped_along(|p| [p[0], p[1], p[2], 0.0, 0.0, 0.0]);
-        let counted = plain.turned(&back, SQUARE / arc.radius());
+        let counted = plain.turned(&self.rotation.inverse(), SQUARE / arc.radius());
         let [.., asked] = arc.frame().axes();
         let [.., axis] = counted.frame().axes();
         let off = direction::angle(&self.rotation.into_frame(asked), &axis);

@@ -6,16 +6,13 @@
 //!
 //! No retraction stands between the call of a tool and its first move: on some controls it would end the length of the tool.
 
+use super::Z;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
 use crate::geom::direction;
-use crate::ir::{Auxiliary, Curve, Cut, Described, Intent, Located, Polyline, Role, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Role, Step};
 use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::{Axes, MAX_AXES, Position};
-
-/// The axis that retracts before the tool turns: the third.
-const Z: usize = 2;
 
 /// The least height of the tool's direction at which the tool goes to the work along its own axis; below it goes straight
 /// down and up: a tilt of 60 degrees.
@@ -89,7 +86,7 @@ impl Walk {
                 self.turns(&place, span)?;
             }
             Step::Cut(cut) => {
-                if let Some((start, end)) = ends(&cut.curve) {
+                if let Some((start, end)) = cut.curve.ends() {
                     self.take_up(&start, Some(cut), span)?;
                     if let Curve::Lines(line) = &cut.curve {
                         self.turns(&line.start, span)?;
@@ -210,24 +207,6 @@ impl Walk {
     }
 }
 
-/// Where a curve starts and ends; none of one that has no places of its own.
-fn ends(curve: &Curve) -> Option<(Position, Position)> {
-    match curve {
-        Curve::Lines(line) | Curve::Through(_, line) => {
-            let mut end = line.start;
-            let last = line.values.chunks_exact(line.stride).next_back()?;
-            end[..last.len()].copy_from_slice(last);
-            Some((line.start, end))
-        }
-        Curve::Arc(arc) => Some((arc.start(), arc.end())),
-        Curve::Nurbs(nurbs) => Some((*nurbs.points().first()?, *nurbs.points().last()?)),
-        Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
-            Some((pieces.first().map(Bezier::start)?, pieces.last().map(Bezier::end)?))
-        }
-        Curve::Logarithmic(_) => None,
-    }
-}
-
 /// The greatest Z that the tip goes to.
 fn highest(steps: &[Located<f64, Curve>]) -> f64 {
     let mut highest = f64::NEG_INFINITY;
@@ -239,19 +218,7 @@ fn highest(steps: &[Located<f64, Curve>]) -> f64 {
                     take(*z);
                 }
             }
-            Step::Cut(cut) => {
-                if let Some((start, end)) = ends(&cut.curve) {
-                    take(start[Z]);
-                    take(end[Z]);
-                }
-                match &cut.curve {
-                    Curve::Lines(line) => line.points().for_each(|p| take(p[Z])),
-                    Curve::Arc(arc) => take(arc.range().1[Z]),
-                    Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(|p| take(p[Z])),
-                    Curve::Through(..) | Curve::Polynomial(_) | Curve::Formula(_) | Curve::Logarithmic(_) => {
-                    }
-                }
-            }
+            Step::Cut(cut) => take(cut.curve.greatest(Z)),
             Step::Comment(_)
             | Step::Tool(_)
             | Step::Spindle(_)
