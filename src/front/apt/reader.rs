@@ -162,16 +162,21 @@ impl<'s> Reader<'s> {
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
         let mut records = Records::new(text);
-        while let Some(record) = &records.next() {
-            match record.kind {
-                Kind::Code => {
-                    // Points are by far the most, and most of them come in a row.
-                    let plain = goto && self.spline.is_none() && !self.ended;
-                    match statement::goto(&record.text).filter(|_| plain) {
-                        Some((numbers, count)) => self.goto(&numbers[..count], record),
-                        None => self.code(record),
-                    }
+        loop {
+            // Points are by far the most, and most of them come in a row.
+            let plain = goto && self.spline.is_none() && !self.ended;
+            if plain && let Some(goto) = statement::goto(records.rest()) {
+                let (line, start) = records.pass(goto.end);
+                let place = start + goto.place.start..start + goto.place.end;
+                self.goto(goto.numbers(), line, Span::new(self.source, place));
+                if MAX_ERRORS <= self.errors {
+                    break;
                 }
+                continue;
+            }
+            let Some(record) = &records.next() else { break };
+            match record.kind {
+                Kind::Code => self.code(record),
                 Kind::Remark => self.remark(&record.text, record.span(self.source)),
                 Kind::TooLong => {
                     let message = format!("a statement of more than {MAX_RECORD} characters is no CL data");
@@ -397,7 +402,7 @@ impl<'s> Reader<'s> {
             Meaning::Gohome => self.gohome(said),
             Meaning::Godlta => self.godlta(said),
             Meaning::Goto => match said.statement.numbers() {
-                Some(numbers) => self.goto(&numbers, said.record),
+                Some(numbers) => self.goto(&numbers, said.record.line, said.span),
                 None => self.error("arguments", format!("{word} takes numbers only"), said.span),
             },
             Meaning::Circle => self.circle(said),

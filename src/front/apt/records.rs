@@ -121,6 +121,20 @@ impl<'t> Records<'t> {
         (!trimmed.is_empty()).then_some((end - text.len(), trimmed))
     }
 
+    /// What is left of the text; nothing while a remark waits.
+    #[inline]
+    pub(super) fn rest(&self) -> &'t str {
+        if self.remark.is_some() { "" } else { self.text.get(self.at..).unwrap_or_default() }
+    }
+
+    /// Passes over the first line of that, which ends there; gives its number and where it starts.
+    #[inline]
+    pub(super) fn pass(&mut self, end: usize) -> (u32, usize) {
+        let (line, start) = (self.line, self.at);
+        self.next_line(start + end + 1);
+        (line, start)
+    }
+
     /// A record of one line or a part of it.
     fn borrowed(&self, kind: Kind, start: usize, end: usize) -> Option<Record<'t>> {
         self.trimmed(start, end).map(|trimmed| Record::borrowed(kind, self.line, trimmed))
