@@ -176,8 +176,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
-        let code = &body[..memchr::memchr(b';', body.as_bytes()).unwrap_or(body.len())];
-        reader.block(code, start, line.number, span);
+        reader.block(body, start, line.number, span);
         if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
@@ -201,7 +200,7 @@ impl Reader<'_> {
         self.splinepath.clear();
     }
 
-    /// One block: its words, then the move that they make.
+    /// One block: its words up to a remark, then the move that they make.
     fn block(&mut self, code: &str, start: usize, line: u32, span: Span) {
         let mut block = Block {
             named: [(0, 0); MAX_AXES],
@@ -221,7 +220,7 @@ impl Reader<'_> {
             starts_spline: false,
         };
         let mut rest = code.trim_ascii_start();
-        while !rest.is_empty() {
+        while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
             // Most words are addresses, and go no way round through a `Word`.
             if let Ok((after, (name, value))) = address(rest) {
@@ -236,7 +235,7 @@ impl Reader<'_> {
                     rest = after.trim_ascii_start();
                 }
                 Err(_) => {
-                    let length = rest.find([' ', '\t']).unwrap_or(rest.len());
+                    let length = rest.find([' ', '\t', ';']).unwrap_or(rest.len());
                     self.assembler.error("word-unreadable", "this word cannot be read", at..at + length);
                     return;
                 }

@@ -143,7 +143,7 @@ fn assignment(input: &str) -> IResult<&str, Word<'_>> {
 /// `call = "SPLINEPATH(", { blank }, "1", { comma, axis }, { blank }, ")"
 ///      | "FGROUP(", { blank }, [ linear_axis, { comma, linear_axis }, { blank } ], ")"`, or another name or arguments
 fn call(input: &str) -> IResult<&str, Word<'_>> {
-    let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
+    let arguments = delimited(char('('), take_while(|c: char| !matches!(c, ')' | ';')), char(')'));
     (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
 }
 
