@@ -377,21 +377,28 @@ pub const MOST_EXACT: usize = 18;
 pub fn scan(text: &[u8], comma: bool) -> Scanned {
     let negative = text.first() == Some(&b'-');
     let sign = usize::from(matches!(text.first(), Some(b'-' | b'+')));
-    let (mut mantissa, mut length, mut point) = (0u64, sign, None);
-    while let Some(&byte) = text.get(length) {
-        let digit = byte.wrapping_sub(b'0');
-        if digit <= 9 {
-            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-        } else if point.is_none() && (byte == b'.' || (comma && byte == b',')) {
-            point = Some(length);
-        } else {
-            break;
-        }
-        length += 1;
+    let (whole, mut mantissa) = digits(&text[sign..], 0);
+    let (mut length, mut fraction) = (sign + whole, 0);
+    let point = text.get(length);
+    if point == Some(&b'.') || (comma && point == Some(&b',')) {
+        (fraction, mantissa) = digits(&text[length + 1..], mantissa);
+        length += 1 + fraction;
     }
-    let fraction = point.map_or(0, |point| length - point - 1);
-    let count = length - sign - usize::from(point.is_some());
-    Scanned { negative, mantissa, count, fraction, length }
+    Scanned { negative, mantissa, count: whole + fraction, fraction, length }
+}
+
+/// How many digits a text begins with, and the number that they are behind those of `number`; it holds as long as these are
+/// at most [`MOST_EXACT`].
+#[inline]
+pub fn digits(text: &[u8], mut number: u64) -> (usize, u64) {
+    for (count, byte) in text.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if 9 < digit {
+            return (count, number);
+        }
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+    }
+    (text.len(), number)
 }
 
 /// The digits of a number that matter, and how many of them stand behind the point; none where these are too many.
