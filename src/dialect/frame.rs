@@ -23,8 +23,8 @@ pub struct Frame<'m> {
     pending: Vec<&'m Template>,
     shifting: Option<Shifting>,
     assign: Template,
-    /// What the lines that may stand behind the header begin and end with.
-    outlines: Vec<Outline>,
+    /// What the lines that may stand behind the header begin and end with, by the first byte of a line.
+    outlines: Vec<Vec<Outline>>,
     started: bool,
     name: Option<String>,
 }
@@ -64,7 +64,13 @@ impl<'m> Frame<'m> {
         };
         let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
         let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
-        frame.outlines = all.map(Outline::new).collect();
+        let outlines: Vec<Outline> = all.map(Outline::new).collect();
+        let beginning = |byte: u8| {
+            let fitting =
+                outlines.iter().filter(|outline| outline.start.bytes().next().is_none_or(|b| b == byte));
+            fitting.cloned().collect()
+        };
+        frame.outlines = (0..=u8::MAX).map(beginning).collect();
         frame
     }
 
@@ -168,7 +174,8 @@ impl<'m> Frame<'m> {
             }
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins and ends like one.
-        if !self.outlines.iter().any(|outline| outline.fits(text)) {
+        let first = text.bytes().next().unwrap_or_default();
+        if !self.outlines[usize::from(first)].iter().any(|outline| outline.fits(text)) {
             return Met::Other;
         }
         if let Some(template) = self.end.first().copied()
@@ -404,9 +411,9 @@ impl<'m> Frame<'m> {
 }
 
 /// What a line of the machine file begins and ends with, whatever is filled in.
+#[derive(Clone)]
 struct Outline {
-    /// The first and the last byte, where it has them: mostly these decide.
-    first: Option<u8>,
+    /// The last byte, where it has one: mostly it decides.
     last: Option<u8>,
     start: String,
     end: String,
@@ -415,15 +422,12 @@ struct Outline {
 impl Outline {
     fn new(template: &Template) -> Outline {
         let (start, end) = template.outline();
-        let (first, last) = (start.bytes().next(), end.bytes().next_back());
-        Outline { first, last, start: start.to_owned(), end: end.to_owned() }
+        Outline { last: end.bytes().next_back(), start: start.to_owned(), end: end.to_owned() }
     }
 
     #[inline]
     fn fits(&self, line: &str) -> bool {
-        let line_bytes = line.as_bytes();
-        (self.first.is_none() || self.first == line_bytes.first().copied())
-            && (self.last.is_none() || self.last == line_bytes.last().copied())
+        (self.last.is_none() || self.last == line.bytes().next_back())
             && line.starts_with(self.start.as_str())
             && line.ends_with(self.end.as_str())
     }
