@@ -162,16 +162,13 @@ impl<'s> Reader<'s> {
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
         let mut records = Records::new(text);
-        loop {
+        while self.errors < MAX_ERRORS && !self.hopeless {
             // Points are by far the most, and most of them come in a row.
             let plain = goto && self.spline.is_none() && !self.ended;
             if plain && let Some(goto) = statement::goto(records.rest()) {
                 let (line, start) = records.pass(goto.end);
                 let place = start + goto.place.start..start + goto.place.end;
                 self.goto(goto.numbers(), line, Span::new(self.source, place));
-                if MAX_ERRORS <= self.errors {
-                    break;
-                }
                 continue;
             }
             let Some(record) = &records.next() else { break };
@@ -184,9 +181,6 @@ impl<'s> Reader<'s> {
                     let span = Span::new(self.source, start..start + 1);
                     self.push(Diagnostic::error("statement-too-long", message).at(span, "it begins here"));
                 }
-            }
-            if MAX_ERRORS <= self.errors || self.hopeless {
-                break;
             }
         }
         self.end(text)
