@@ -7,7 +7,7 @@ use crate::dialect::parts::Assigned;
 use crate::geom::direction;
 use crate::geom::rotation::Rotation;
 use crate::ir::{Auxiliary, Curve, Decimals, Intent, Role, Step, Units, Written};
-use crate::machine::{Machine, Moves, Turn};
+use crate::machine::{Machine, Moves, PlaneApproach, Turn};
 use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
 use crate::units::{Axes, DEGREES, Kind, Position};
@@ -22,8 +22,8 @@ pub struct Setup {
     pub axes: Vec<AxisFigures>,
     /// The least and the greatest angle of the tool to Z, degrees, in five axes and in tilted planes.
     pub tilt: Option<[f64; 2]>,
-    /// Whether ranges are counted in tilted planes, each in its own.
-    pub planes: bool,
+    /// How tilted planes are approached, where there are some; then ranges are counted in each of them.
+    pub planes: Option<PlaneApproach>,
     /// Where rotary axes go evenly between two directions: how far that leaves the great circle at most, degrees.
     pub turn: Option<f64>,
     /// Where rapids are clear: an axis and its place.
@@ -100,7 +100,7 @@ impl Setup {
             zero: zero(intent),
             axes: figures.collect(),
             tilt: tilt(decimals, machine),
-            planes: decimals.program.has_planes(),
+            planes: decimals.program.has_planes().then_some(machine.orientation.plane_approach),
             turn: (machine.orientation.turn == Turn::Tilt).then(|| departure(decimals)).flatten(),
             clear: clear(intent),
             home,
@@ -134,10 +134,21 @@ impl Setup {
                 Some(format!("{} {} TO {}", figures.axis, short(low, 3), short(high, 3)))
             })
             .collect();
-        let counted = if self.planes { "RANGE, COUNTED IN EACH PLANE" } else { "RANGE" };
+        let counted = if self.planes.is_some() { "RANGE, COUNTED IN EACH PLANE" } else { "RANGE" };
         lines.push(format!("{counted}: {}", ranges.join(", ")));
         if let Some([least, most]) = self.tilt {
             lines.push(format!("TOOL AXIS: {} TO {} DEGREES FROM Z", short(least, 3), short(most, 3)));
+        }
+        match self.planes {
+            Some(PlaneApproach::Over) => {
+                lines.push(
+                    "PLANES ARE APPROACHED X Y FIRST, THEN Z: THE TABLE MUST TILT, NOT THE HEAD".to_owned(),
+                );
+            }
+            Some(PlaneApproach::Together) => {
+                lines.push("PLANES ARE APPROACHED X Y Z TOGETHER IN A STRAIGHT LINE FROM HOME".to_owned());
+            }
+            None => {}
         }
         if let Some((axis, to)) = &self.clear {
             let home = if self.home.is_empty() {

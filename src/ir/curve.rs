@@ -3,6 +3,7 @@
 use super::padded;
 use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
+use crate::geom::direction;
 use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
@@ -66,6 +67,37 @@ impl Curve {
             }
             Curve::Logarithmic(_) => None,
         }
+    }
+
+    /// The same curve with every place mapped to one of `stride` numbers, each of them affine in the place; none of a curve that
+    /// such a map does not keep what it is.
+    pub fn mapped(&self, stride: usize, map: impl Fn(&Position) -> Position) -> Option<Curve> {
+        Some(match self {
+            Curve::Lines(line) => Curve::Lines(line.mapped(stride, map)),
+            Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(map)),
+            Curve::Polynomial(pieces) => {
+                Curve::Polynomial(pieces.iter().map(|piece| piece.mapped(&map)).collect())
+            }
+            Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
+        })
+    }
+
+    /// The greatest angle between the direction of the tool, in coordinates from `first` on, and an axis of length 1, radians;
+    /// none of a curve that no input has in five axes. Between control points a direction is a sum of theirs, and in a cone
+    /// about the axis that holds those.
+    pub fn strays(&self, first: usize, axis: &[f64; 3]) -> Option<f64> {
+        let of = |points: &mut dyn Iterator<Item = Position>| {
+            points
+                .map(|p| direction::angle(&[p[first], p[first + 1], p[first + 2]], axis))
+                .fold(0.0, f64::max)
+        };
+        Some(match self {
+            Curve::Lines(line) => of(&mut std::iter::once(line.start).chain(line.points())),
+            Curve::Arc(arc) => of(&mut [arc.start(), arc.end()].into_iter()),
+            Curve::Nurbs(nurbs) => of(&mut nurbs.points().iter().copied()),
+            Curve::Polynomial(pieces) => of(&mut pieces.iter().flat_map(Bezier::control_points).copied()),
+            Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
+        })
     }
 
     /// A coordinate that no place of it exceeds; −∞ of a logarithmic curve.

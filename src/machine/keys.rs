@@ -84,6 +84,7 @@ pub const KEYS: &[Key] = &[
             Key::value("arcs"),
             Key::value("safe_height"),
             Key::value("plane_order"),
+            Key::value("plane_approach"),
         ],
     ),
     Key::table(
@@ -354,6 +355,9 @@ pub(super) struct OrientationFile {
     /// About which axes the angles of a tilted plane turn, each about the axes as turned so far: xyz, zyx, zxz and so on.
     #[schemars(with = "Option<String>", regex(pattern = "^[xyz]{3}$"))]
     pub(super) plane_order: Option<Spanned<String>>,
+    /// How the tool comes from its home to a tilted plane. over: X and Y of the plane first, then Z, for a table that tilts; together: X, Y and Z at once, for a head that tilts.
+    #[schemars(with = "Option<String>", extend("enum" = ["over", "together"]))]
+    pub(super) plane_approach: Option<Spanned<String>>,
 }
 
 /// The lines round a program. {name}, {tool} and {rpm} are filled in.

@@ -16,8 +16,8 @@ use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
 pub use keys::{KEYS, schema};
 pub use parts::{
-    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, RotaryFeed,
-    Spline, Text, Turn,
+    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, PlaneApproach,
+    RotaryFeed, Spline, Text, Turn,
 };
 
 /// The machines that are built in, with their files.

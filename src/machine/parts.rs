@@ -6,6 +6,7 @@ use crate::dialect::{Dialect, Motion};
 use crate::geom::rotation::Order;
 use crate::ir::Auxiliary;
 use crate::units::{Axes, Axis};
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// One machine.
@@ -71,6 +72,19 @@ pub struct Orientation {
     pub safe_height: Option<f64>,
     /// About which axes the angles of a tilted plane turn.
     pub plane_order: Order,
+    /// How the tool comes to a tilted plane from its home.
+    pub plane_approach: PlaneApproach,
+}
+
+/// How the tool comes from its home to the first place of a tilted plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PlaneApproach {
+    /// X and Y of the plane first, then Z along the tool: where the table tilts, X and Y are level and Z waits at home.
+    Over,
+    /// X, Y and Z at once: where the head tilts, X and Y of the plane would take the machine's Z down before the tool has
+    /// come out to its side.
+    Together,
 }
 
 /// How a control turns the tool from one direction to another.

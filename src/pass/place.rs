@@ -10,8 +10,8 @@ mod tip;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
-use crate::machine::Machine;
-use crate::units::{Axes, Axis, DEGREES, Kind, Position};
+use crate::machine::{Machine, PlaneApproach};
+use crate::units::{Axes, Axis, DEGREES, Kind};
 
 /// The axis that retracts before a tool turns: the third.
 const Z: usize = 2;
@@ -34,20 +34,33 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
             }
         }
     }
-    plane::tilt(&mut intent, machine)?;
-    let machine = machine.with_axes(&intent.program.axes)?;
-    // A program that was written before leads it already.
-    let led = |located: &Located<f64, Curve>| located.step == Step::Auxiliary(Auxiliary::TipControl);
-    if !intent.program.steps.iter().any(led) {
-        tip::lead(&mut intent, &machine)?;
-    }
+    let machine = directions(&mut intent, machine)?;
     homes(&mut intent, &machine);
     if intent.program.axes.direction().is_none() {
-        over_the_work(&mut intent);
+        over_the_work(&mut intent, machine.orientation.plane_approach);
     }
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
     Ok(intent)
+}
+
+/// Settles how the tool is turned: not at all, in planes, or with its tip led; the machine as that wants it.
+fn directions(intent: &mut Intent, machine: &Machine) -> Result<Machine, Diagnostics> {
+    // A program that was written before leads it already.
+    let led = |located: &Located<f64, Curve>| located.step == Step::Auxiliary(Auxiliary::TipControl);
+    if intent.program.steps.iter().any(led) {
+        return machine.with_axes(&intent.program.axes);
+    }
+    plane::upright(intent, machine);
+    let note = plane::tilt(intent, machine)?;
+    let told = |mut errors: Diagnostics| {
+        errors.0.extend(note.clone());
+        errors
+    };
+    let machine = machine.with_axes(&intent.program.axes).map_err(told)?;
+    tip::lead(intent, &machine).map_err(told)?;
+    intent.warnings.0.extend(note);
+    Ok(machine)
 }
 
 /// Leaves out retractions to a home that the machine file does not state.
@@ -66,17 +79,20 @@ fn homes(intent: &mut Intent, machine: &Machine) {
 }
 
 /// From its home the tool goes over the work before it goes down. A rapid that brings an axis from its home brings the others
-/// first. Where a cut comes instead, the others go to its end at rapid, or to its start where it is no line, and the axis
-/// comes down at the feed of the cut: it starts wherever home is.
-fn over_the_work(intent: &mut Intent) {
+/// first. Where a cut comes instead, the others go to its start at rapid, and the axis comes down to it at the feed of the cut:
+/// it starts wherever home is. To a tilted plane the machine may want all axes at once.
+fn over_the_work(intent: &mut Intent, approach: PlaneApproach) {
     let (count, steps) = (intent.program.axes.count(), &mut intent.program.steps);
     let mut home = None;
+    let mut together = false;
     let mut all = Vec::with_capacity(steps.len());
     for mut located in std::mem::take(steps) {
         match &mut located.step {
             Step::Home(axis) => home = Some(*axis),
             Step::Rapid(targets) => {
-                if let Some(axis) = home.take_if(|home| targets.iter().any(|(axis, _)| axis == home)) {
+                if let Some(axis) = home.take_if(|home| targets.iter().any(|(axis, _)| axis == home))
+                    && !together
+                {
                     let (down, over): (Vec<_>, Vec<_>) =
                         targets.iter().partition(|(named, _)| *named == axis);
                     if !over.is_empty() {
@@ -87,31 +103,24 @@ fn over_the_work(intent: &mut Intent) {
             }
             Step::Cut(cut) => {
                 let span = located.span;
-                let mut over = |axis: usize, place: &Position| {
-                    let targets = (0..count).filter(|i| *i != axis).map(|i| (i, place[i])).collect();
+                // Where the line does not say where it starts, it is at its first place.
+                let unsaid =
+                    matches!(&cut.curve, Curve::Lines(line) if line.points().next() == Some(line.start));
+                if let (Some(axis), Some((start, _))) = (home.take(), cut.curve.ends()) {
+                    let targets = (0..count).filter(|i| *i != axis).map(|i| (i, start[i])).collect();
                     all.push(Located { step: Step::Rapid(targets), span });
-                };
-                match (home.take(), &mut cut.curve) {
-                    (None, _) => {}
-                    (Some(axis), Curve::Lines(line)) => {
-                        let first = line.points().next();
-                        if let Some(first) = first {
-                            over(axis, &first);
-                            line.start = first;
-                        }
-                    }
-                    (Some(axis), curve) => {
-                        if let Some((start, _)) = curve.ends() {
-                            over(axis, &start);
-                            let mut line = Polyline::new(start, count);
-                            line.push(&start);
-                            let curve = Curve::Lines(line);
-                            let down = Cut { feed: cut.feed, role: Role::Approach, curve };
-                            all.push(Located { step: Step::Cut(down), span });
-                        }
+                    if !unsaid {
+                        let mut line = Polyline::new(start, count);
+                        line.push(&start);
+                        let down = Cut { feed: cut.feed, role: Role::Approach, curve: Curve::Lines(line) };
+                        all.push(Located { step: Step::Cut(down), span });
                     }
                 }
             }
+            Step::Auxiliary(Auxiliary::Plane(angles)) => {
+                together = approach == PlaneApproach::Together && *angles != [0.0; 3];
+            }
+            Step::Auxiliary(Auxiliary::PlaneEnd) => together = false,
             Step::Comment(_)
             | Step::Tool(_)
             | Step::Spindle(_)

@@ -227,7 +227,8 @@ fn the_map_leads_from_blocks_to_lines() {
         assert!(seen.iter().any(|(_, first, last)| (*first, *last) == (9, 10)), "{seen:?}");
         assert!(find(11).all(|line| line.contains("X0") || line.contains("X+0")), "{seen:?}");
         assert!(find(12).any(|line| line.contains("1.5") || line.contains("CYCL")), "{seen:?}");
-        assert!(find(14).all(|line| line.contains("Z9") || line.contains("Z+9")), "{seen:?}");
+        // The rapid, and Z to its home behind it.
+        assert!(find(14).next().is_some_and(|line| line.contains("Z9") || line.contains("Z+9")), "{seen:?}");
     }
 }
 

@@ -68,13 +68,23 @@ fn tilted(block: &str) -> Option<Matrix> {
     None
 }
 
+/// A block without its number.
+fn block(line: &str) -> &str {
+    line.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim()
+}
+
+/// Where the tool points in the planes of a text.
+fn axes(text: &str) -> Vec<[f64; 3]> {
+    text.lines().filter_map(|line| tilted(block(line))).map(|r| [r[0][2], r[1][2], r[2][2]]).collect()
+}
+
 /// Where the tip goes in the coordinates of the work, and where the tool points, straight from a text of lines.
 fn places(text: &str) -> Vec<([f64; 3], [f64; 3])> {
     let mut plane = about('Z', 0.0);
     let mut at = [f64::NAN; 3];
     let mut places: Vec<([f64; 3], [f64; 3])> = Vec::new();
     for line in text.lines().filter(|line| !line.starts_with([';', '('])) {
-        let block = line.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim();
+        let block = block(line);
         if let Some(next) = tilted(block) {
             (plane, at) = (next, [f64::NAN; 3]);
             continue;
@@ -167,7 +177,8 @@ fn every_order_of_turns_is_proved() {
             }
         }
         let third = 1.0 / 3.0f64.sqrt();
-        let expected = [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [third; 3]];
+        // At the end it stands upright again.
+        let expected = [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [third; 3], [0.0, 0.0, 1.0]];
         assert_eq!(turned.len(), expected.len(), "{order}");
         for (axis, expected) in turned.iter().zip(&expected) {
             assert!(distance(axis, expected) < 5.0e-6, "{order}: {axis:?}");
@@ -187,8 +198,8 @@ fn the_tool_turns_where_it_is_clear() {
         let text = compiled(&case(), &default(dialect)).text;
         let lines: Vec<&str> = text.lines().collect();
         let tilts: Vec<usize> = (0..lines.len()).filter(|i| lines[*i].contains(tilt)).collect();
-        assert_eq!(tilts.len(), 3, "{text}");
-        for at in tilts {
+        assert_eq!(tilts.len(), 4, "{text}");
+        for (i, at) in tilts.into_iter().enumerate() {
             let back = lines[..at].iter().rposition(|line| line.contains(home)).expect(home);
             let moves = lines[back + 1..at].iter().filter(|line| {
                 let words: Vec<&str> = line.split(' ').collect();
@@ -196,6 +207,14 @@ fn the_tool_turns_where_it_is_clear() {
                     && words.iter().any(|word| word.starts_with(['X', 'Y', 'Z']) && *word != "Z")
             });
             assert_eq!(moves.count(), 0, "{text}");
+            if i == 3 {
+                // The last one only turns the tool upright.
+                assert!(
+                    !lines[at + 1..].iter().any(|line| line.contains(" X") || line.contains(" Z")),
+                    "{text}"
+                );
+                continue;
+            }
             let down = lines[at + 1..].iter().position(|line| line.contains('Z') && !line.contains("G68.2"));
             let down = at + 1 + down.expect("a way down");
             assert!(lines[back + 1..=down].iter().any(|line| line.contains(length)), "{text}");
@@ -347,6 +366,84 @@ fn lines_of_a_plane_say_its_angles_and_the_length() {
     );
     assert_eq!(told("[orientation]\nplane_order = \"xxz\"\n"), "plane-order");
     assert_eq!(told("[orientation]\nplane_order = \"abc\"\n"), "plane-order");
+}
+
+/// Where the head tilts, X and Y of a tilted plane alone would take the machine's Z down.
+#[test]
+fn a_head_that_tilts_comes_with_all_axes_at_once() {
+    for (dialect, tilt) in [("sinumerik", "CYCLE800(0"), ("heidenhain", "PLANE SPATIAL"), ("mazak", "G53.1")]
+    {
+        let head =
+            machine(&format!("extends = \"{dialect}\"\n[orientation]\nplane_approach = \"together\"\n"));
+        let output = compiled(&case(), &head);
+        goes_where_asked(&case(), &output.text, dialect);
+        let lines: Vec<&str> = output.text.lines().collect();
+        let mut ways = Vec::new();
+        for at in (0..lines.len()).filter(|i| lines[*i].contains(tilt)) {
+            let first = lines[at + 1..].iter().find(|line| line.contains(" X") && line.contains(" Y"));
+            ways.extend(first.map(|line| line.contains(" Z")));
+        }
+        // The first plane stands upright, and there the tool goes over the work first; so does the last, where it ends.
+        assert_eq!(ways, [false, true, true], "{}", output.text);
+        assert!(output.text.contains("TOGETHER"), "{}", output.text);
+        let over = compiled(&case(), &default(dialect)).text;
+        assert!(over.contains("APPROACHED X Y FIRST") && over != output.text);
+        // From below, home in Z leads through the work.
+        let below = case().replace("0.0000000,-1.0000000,0.0000000", "0.0000000,-0.8000000,-0.6000000");
+        let below: String = below.split_inclusive('\n').filter(|line| !line.starts_with("CIRCLE")).collect();
+        let errors = program("nx", &below, &head).map(|output| output.text).expect_err("from below");
+        assert_eq!(errors.0[0].id, "plane-from-below");
+        assert!(program("nx", &below, &default(dialect)).is_ok());
+    }
+}
+
+/// A file of six decimals with a unit of noise in each component.
+#[test]
+fn a_unit_of_the_last_decimal_turns_no_tool() {
+    let input = "PARTNO NOISE\nMULTAX/ON\nLOADTL/5\nSPINDL/RPM,2000,CLW\nFEDRAT/300,MMPM\nRAPID\n\
+        GOTO/0,-60,20,0,-0.6,0.8\nGOTO/0,-30,0,0.000001,-0.6,0.799999\nGOTO/10,-30,0,-0.000001,-0.600001,0.8\nRAPID\n\
+        GOTO/10,-60,40,0,-0.6,0.8\nRAPID\nGOTO/10,-60,90,0.000001,0.000001,1\nGOTO/20,0,0,0.000010,0,1\nRAPID\n\
+        GOTO/20,0,50\nFINI\n";
+    // The second cut against the first rapid's direction: 1e-6 across, and about as much along; the last against Z: 1e-5.
+    for dialect in DIALECTS {
+        let own = default(dialect);
+        let output = compiled(input, &own);
+        assert!(output.warnings.0.is_empty(), "{:?}", output.warnings);
+        let planes = axes(&output.text);
+        assert_eq!(planes.len(), 2, "{}", output.text);
+        assert!(
+            distance(&planes[0], &[0.0, -0.6, 0.8]) < 5.0e-6 && planes[1] == [0.0, 0.0, 1.0],
+            "{planes:?}"
+        );
+        // The greatest is that of the last cut, and it is stated.
+        let rad = output.report.expect("a proof").deviation.rad;
+        assert!((rad - 1.0e-5).abs() < 1.0e-10, "{dialect}: {rad}");
+        verified(input, &output.text, &own).unwrap_or_else(|errors| panic!("{dialect}: {errors:?}"));
+        // With a tolerance that they exceed the tool turns while it cuts, and a note says where.
+        let strict = machine(&format!("extends = \"{dialect}\"\n[orientation]\ntolerance = 0.001\n"));
+        let output = compiled(input, &strict);
+        assert!(axes(&output.text).is_empty(), "{}", output.text);
+        let notes: Vec<&str> = output.warnings.0.iter().map(|d| d.id).collect();
+        assert_eq!(notes, ["tip-led"]);
+        let at = output.warnings.0[0].span.expect("a place");
+        let place = &input[at.start as usize..at.end as usize];
+        assert!(place.contains("GOTO/20,0,0,"), "{place}");
+    }
+}
+
+#[test]
+fn a_tool_that_is_upright_but_for_noise_needs_three_axes() {
+    let input = "TOOL PATH/UPRIGHT,TOOL,A\nMULTAX/ON\nLOADTL/5\nSPINDL/RPM,2000,CLW\nFEDRAT/300,MMPM\nRAPID\n\
+        GOTO/0,0,20,0.000002,0,1\nGOTO/0,0,0,0,0,1\nCIRCLE/5,0,0,0,0,1,5\nGOTO/10,0,0,0.000001,0.000001,1\nRAPID\nGOTO/10,0,20\nFINI\n";
+    for dialect in DIALECTS {
+        let own = default(dialect);
+        let output = compiled(input, &own);
+        assert_eq!(output.intent.program.axes.count(), 3);
+        assert!(axes(&output.text).is_empty(), "{}", output.text);
+        let rad = output.report.expect("a proof").deviation.rad;
+        assert!((rad - 2.0e-6).abs() < 1.0e-10, "{dialect}: {rad}");
+        verified(input, &output.text, &own).unwrap_or_else(|errors| panic!("{dialect}: {errors:?}"));
+    }
 }
 
 /// Between a cut and the remark behind it nothing moves that the input does not have: a tool that is down goes nowhere at rapid.

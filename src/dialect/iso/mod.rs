@@ -128,7 +128,7 @@ fn is_block(line: &str) -> bool {
 }
 
 /// The line of a tool call that does not stand alone: without an axis G43 moves Z by the offset on some controls, so it
-/// is written into the first rapid of Z.
+/// is written into the first block of Z.
 const OFFSET: &str = "G43 H{tool}";
 
 /// A machine whose tool calls do not end with [`OFFSET`], and whether those lines did.

@@ -22,6 +22,7 @@ pub(super) fn write(legal: &Legal, machine: &Machine) -> String {
         z: Axis::new("Z").and_then(|z| machine.axes.index_of(z)),
         offset: &offset,
         offset_due: None,
+        offset_again: None,
         offset_tool: None,
         led: false,
         through: false,
@@ -39,6 +40,8 @@ struct Writer<'a> {
     offset: &'a Offset<'a>,
     /// The tool whose length offset is still to be called.
     offset_due: Option<u32>,
+    /// The tool whose length offset is in force, and which this section calls again with its first rapid of Z.
+    offset_again: Option<u32>,
     /// The tool whose length offset each section calls.
     offset_tool: Option<u32>,
     /// Whether the tip of the tool is led.
@@ -84,7 +87,7 @@ impl Writer<'_> {
                 Part::Spindle => {}
                 // The lines that lead the tip hold the length of the tool.
                 Part::TipControl(true) => {
-                    self.offset_due = None;
+                    (self.offset_due, self.offset_again) = (None, None);
                     self.led = true;
                 }
                 Part::TipControl(false) => {
@@ -106,17 +109,17 @@ impl Writer<'_> {
                     self.line(&format!("({text})"));
                     self.modal.forget();
                     self.plane = None;
-                    self.offset_due = self.offset_tool.filter(|_| !self.led);
+                    self.offset_again = self.offset_tool.filter(|_| !self.led);
                 }
                 Part::Body => {
                     self.modal.forget();
-                    self.offset_due = self.offset_tool.filter(|_| !self.led);
+                    self.offset_again = self.offset_tool.filter(|_| !self.led);
                 }
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => {
-                    if let Some(tool) = self.offset_due.take() {
-                        self.line(&format!("G43 H{tool}"));
-                    }
+                    // A section that starts with a cut goes on with what is in force.
+                    self.offset_again = None;
+                    self.offset_before(&cut.curve);
                     match &cut.curve {
                         Written::Lines(points) => self.lines(points, cut.feed),
                         // The dialect asks for nothing but centres.
@@ -155,13 +158,31 @@ impl Writer<'_> {
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
         self.modal.begin("N");
         self.modal.motion("G0");
-        if targets.iter().any(|(axis, _)| Some(*axis) == self.z)
-            && let Some(tool) = self.offset_due.take()
-        {
-            self.modal.text(&format!("G43 H{tool} "));
+        if targets.iter().any(|(axis, _)| Some(*axis) == self.z) {
+            let again = self.offset_again.take();
+            if let Some(tool) = self.offset_due.take().or(again) {
+                self.modal.text(&format!("G43 H{tool} "));
+            }
         }
         self.modal.targets(targets);
         self.modal.end();
+    }
+
+    /// Calls a length that is due: in the first line where that names Z, otherwise in a block of its own.
+    fn offset_before(&mut self, curve: &Written) {
+        let Some(tool) = self.offset_due else { return };
+        let names_z = |points: &WrittenPoints| {
+            let mut ends = points.points();
+            self.z.zip(ends.next()).is_some_and(|(z, end)| self.modal.position[z] != Some(end[z]))
+        };
+        let waits = match curve {
+            Written::Lines(points) => names_z(points),
+            Written::Arc(_) | Written::Nurbs(_) | Written::Through(..) | Written::Polynomial(_) => false,
+        };
+        if !waits {
+            self.offset_due = None;
+            self.line(&format!("G43 H{tool}"));
+        }
     }
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
@@ -170,6 +191,11 @@ impl Writer<'_> {
             let rate = points.rates.get(i);
             self.modal.begin("N");
             self.modal.motion("G1");
+            if i == 0
+                && let Some(tool) = self.offset_due.take()
+            {
+                self.modal.text(&format!("G43 H{tool} "));
+            }
             self.modal.inverse(rate.is_some());
             self.modal.moved_axes(point);
             match rate {

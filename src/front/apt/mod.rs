@@ -38,6 +38,7 @@ mod program;
 mod reader;
 mod records;
 mod remarks;
+mod running;
 mod splines;
 mod statement;
 mod systems;

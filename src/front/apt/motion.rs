@@ -5,10 +5,11 @@ use super::program::UPRIGHT;
 use super::reader::{Reader, Said};
 use super::technology::Feed;
 use crate::diagnostic::Diagnostic;
+use crate::geom::direction;
 use crate::source::Span;
 
-/// How far a tool axis may be from Z and still be Z: as far as six decimals say nothing.
-const AXIS_SLACK: f64 = 1.0e-6;
+/// How far two tool axes may be apart and still be taken for one on an arc, radians: six decimals say no more.
+const AXIS_SLACK: f64 = 2.0e-6;
 
 /// What waits for the next point.
 #[derive(Clone, Debug)]
@@ -39,7 +40,10 @@ impl Reader<'_> {
             if !self.set_axis([numbers[3], numbers[4], numbers[5]], span) {
                 return;
             }
-        } else if self.axis_stale && numbers.len() == 3 && self.program.axis() != UPRIGHT {
+        } else if self.axis_stale
+            && numbers.len() == 3
+            && AXIS_SLACK < direction::angle(&self.program.axis(), &UPRIGHT)
+        {
             return self.stale_axis(span);
         } else if numbers.len() != 3 {
             let message =
@@ -103,12 +107,13 @@ impl Reader<'_> {
             self.error("tool-axis", "the tool axis is no direction", span);
             return false;
         }
-        let [x, y, z] = axis.map(|x| x / length);
-        let upright = x.abs() < AXIS_SLACK && y.abs() < AXIS_SLACK && 0.0 < z;
-        let axis = if upright { UPRIGHT } else { [x, y, z] };
+        let axis = axis.map(|x| x / length);
         self.axis_stale = false;
         if axis != self.program.axis() {
             if let Some(Pending::Circle(_)) = &self.pending {
+                if direction::angle(&axis, &self.program.axis()) <= AXIS_SLACK {
+                    return true;
+                }
                 self.turning_arc(span);
                 return false;
             }
@@ -119,7 +124,7 @@ impl Reader<'_> {
 
     /// `MULTAX[/ON|OFF]`: whether points carry an axis; each point shows it anyway.
     pub(super) fn multax(&mut self, said: &Said<'_>) {
-        if !said.arguments().is_empty() && !said.has("ON") && !said.has("OFF") {
+        if !said.is_bare() && (said.arguments().len() != 1 || (!said.has("ON") && !said.has("OFF"))) {
             self.error("arguments", "MULTAX is ON or OFF", said.span);
         }
         self.axis_stale |= said.has("OFF");
@@ -195,6 +200,11 @@ impl Reader<'_> {
 
     /// `GODLTA/dx,dy,dz | GODLTA/d`, the latter along the tool axis.
     pub(super) fn godlta(&mut self, said: &Said<'_>) {
+        if self.cycle.is_some() {
+            let message =
+                "an increment in a cycle: whether it counts from the hole or from above it no page says";
+            return self.refuse("cycle-increment", message, said.span);
+        }
         let Some(from) = self.program.position else {
             return self.error("start-unknown", "an increment from a place that is not known", said.span);
         };

@@ -1,5 +1,6 @@
 //! Moves and switches become the steps of a program: straight moves of one feed are gathered into one run.
 
+use super::running::{Coolant, Running, Spindle};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
@@ -33,6 +34,7 @@ pub(super) struct Builder {
     stood: [f64; 3],
     /// Whether the tool was ever tilted, so that every place has its direction too.
     five: bool,
+    running: Running,
 }
 
 /// A tip and a direction in six places.
@@ -72,6 +74,7 @@ impl Builder {
             axis: UPRIGHT,
             stood: UPRIGHT,
             five: false,
+            running: Running::default(),
         }
     }
 
@@ -168,21 +171,30 @@ impl Builder {
         // CAM systems leave it to the post to bring the tool away before it is changed.
         self.step(Step::Home(Z), span);
         self.step(Step::Tool(number), span);
+        self.running.tool(number);
         self.told = false;
     }
 
     /// Starts the spindle, clockwise, rev/min.
     pub(super) fn spindle(&mut self, rpm: f64, span: Span) {
+        self.running.spindle(Spindle::Turns(rpm));
         self.step(Step::Spindle(rpm), span);
     }
 
     /// Starts the coolant.
     pub(super) fn coolant(&mut self, span: Span) {
+        self.running.coolant(Coolant::Flows);
         self.step(Step::Coolant, span);
     }
 
     /// Switches something.
     pub(super) fn auxiliary(&mut self, auxiliary: Auxiliary<f64>, span: Span) {
+        if auxiliary == Auxiliary::SpindleStop {
+            self.running.spindle(Spindle::Stopped);
+        }
+        if auxiliary == Auxiliary::CoolantStop {
+            self.running.coolant(Coolant::Off);
+        }
         self.step(Step::Auxiliary(auxiliary), span);
     }
 
@@ -199,6 +211,7 @@ impl Builder {
             targets.extend(directed(&self.axis));
         }
         self.step(Step::Rapid(targets), span);
+        self.running.rapid(span);
         self.before = self.position;
         self.position = Some(*to);
         self.told = true;
@@ -217,6 +230,7 @@ impl Builder {
             None => self.place(to),
         };
         if self.run.is_none() {
+            self.running.cuts(span);
             self.run = Some((Polyline::new(start, self.stride()), feed, span));
         }
         let Some((points, _, whole)) = &mut self.run else { return };
@@ -235,6 +249,7 @@ impl Builder {
     /// Follows an arc, mm/min.
     pub(super) fn arc(&mut self, arc: Arc, feed: f64, span: Span) {
         let end = arc.end();
+        self.running.cuts(span);
         self.before = None;
         let cut = Cut { feed: Some(feed), role: Role::AsAsked, curve: Curve::Arc(arc) };
         self.step(Step::Cut(cut), span);
@@ -246,6 +261,7 @@ impl Builder {
     /// Follows a spline, mm/min.
     pub(super) fn spline(&mut self, nurbs: Nurbs, feed: f64, span: Span) {
         let end = nurbs.points().last().copied();
+        self.running.cuts(span);
         self.before = None;
         let cut = Cut { feed: Some(feed), role: Role::Path, curve: Curve::Nurbs(nurbs) };
         self.step(Step::Cut(cut), span);
@@ -256,6 +272,29 @@ impl Builder {
         }
         self.told = true;
         self.stood = self.axis;
+    }
+
+    /// Where positions count in another frame from here on, the operator sets it: the tool is brought away, the program stops, and
+    /// starts again with the call of its tool. Where the tool is in the new frame nobody knows.
+    pub(super) fn reframed(&mut self, span: Span) {
+        if let Some(tool) = self.running.called() {
+            self.step(Step::Home(Z), span);
+            self.step(Step::Auxiliary(Auxiliary::Stop), span);
+            self.step(Step::Tool(tool), span);
+            for step in self.running.again() {
+                self.step(step, span);
+            }
+        } else {
+            self.step(Step::Auxiliary(Auxiliary::Stop), span);
+        }
+        self.running.reframed();
+        self.told = false;
+        (self.position, self.before) = (None, None);
+    }
+
+    /// What there is to say of spindle, coolant and tool where they cut.
+    pub(super) fn told(&mut self) -> Diagnostics {
+        std::mem::take(&mut self.running.diagnostics)
     }
 
     /// What was asked, in all.
@@ -275,7 +314,8 @@ impl Builder {
             return Err(Diagnostic::error("moves-missing", message).at(whole, "").into());
         }
         if self.steps.iter().any(|located| matches!(located.step, Step::Tool(_))) {
-            self.steps.push(Located { step: Step::Home(Z), span: whole });
+            let span = self.steps.last().map_or(whole, |located| located.span);
+            self.steps.push(Located { step: Step::Home(Z), span });
         }
         let all = Axes::with_direction();
         let axes = Axes::new(&all.as_slice()[..self.stride()]).ok_or_else(Diagnostics::new)?;

@@ -9,8 +9,8 @@ use crate::machine::keys::{
 };
 use crate::machine::template::Template;
 use crate::machine::{
-    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, Spline, Text,
-    Turn,
+    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, PlaneApproach,
+    Spline, Text, Turn,
 };
 use crate::source::Span;
 use crate::units::{Axes, Axis};
@@ -253,6 +253,15 @@ impl Reader {
             }
             order
         });
+        let plane_approach = file.plane_approach.as_ref().and_then(|word| match word.get_ref().as_str() {
+            "over" => Some(PlaneApproach::Over),
+            "together" => Some(PlaneApproach::Together),
+            _ => {
+                let message = "plane_approach is \"over\" or \"together\"";
+                self.error("plane-approach", message, word.span());
+                None
+            }
+        });
         let digits = file.digits.as_ref().map(|digits| *digits.get_ref());
         let second = file.second_curve.as_ref().map(|second| *second.get_ref());
         Some(Orientation {
@@ -261,6 +270,11 @@ impl Reader {
             turn,
             second_curve: self.or(second, base.map(|b| b.second_curve), "orientation.second_curve")?,
             plane_order: self.or(plane_order, base.map(|b| b.plane_order), "orientation.plane_order")?,
+            plane_approach: self.or(
+                plane_approach,
+                base.map(|b| b.plane_approach),
+                "orientation.plane_approach",
+            )?,
             length: self.or(length, base.map(|b| b.length), "orientation.length")?,
             arcs: self.or(
                 file.arcs.as_ref().map(|arcs| *arcs.get_ref()),

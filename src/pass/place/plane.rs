@@ -12,6 +12,12 @@
 //!
 //! The angles are chosen in the decimals that the text has, and places are counted in the plane of these angles. So no
 //! rounding moves a place; the tool's direction alone is off, by half a unit of the last decimal or so, and that is stated.
+//!
+//! # What counts as one direction
+//!
+//! A file states directions in some decimals, and a unit of the last of them turns no tool. Directions within half of
+//! `[orientation] tolerance` of the one that a plane was tilted for are its own, and one that is as near to Z is Z; how far each
+//! of them is from the plane's axis is in the bound. The other half of the tolerance is left to the rounding of angles.
 
 use super::Z;
 use crate::decimal::{Decimal, round_units};
@@ -21,15 +27,12 @@ use crate::geom::deviation::Bound;
 use crate::geom::direction;
 use crate::geom::rotation::Rotation;
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Step};
-use crate::machine::Machine;
+use crate::machine::{Machine, Orientation, PlaneApproach};
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, Position};
 
 /// How many coordinates a place has.
 const PLACE: usize = 3;
-
-/// Directions this near to each other are one, radians: a unit of the sixth decimal.
-const SAME: f64 = 1.0e-6;
 
 /// The angles of a plane are rounded, so that an arc that is square to the tool is hardly ever quite so: it is taken for one
 /// where that moves it by less than this, mm.
@@ -37,12 +40,72 @@ const SQUARE: f64 = 1.0e-4;
 
 type All = Vec<Located<f64, Curve>>;
 
-/// Writes an intent of five axes in tilted planes, where the machine has them and the tool turns at rapid only.
+/// How far a direction may be from another one and count as the same, radians.
+fn near(machine: &Machine) -> f64 {
+    0.5 * machine.orientation.tolerance / DEGREES
+}
+
+/// Z, or against it, where a direction is as near to that.
+fn squared(direction: [f64; 3], near: f64) -> [f64; 3] {
+    let ends = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    ends.into_iter().find(|end| direction::angle(end, &direction) <= near).unwrap_or(direction)
+}
+
+/// An intent whose tool stands upright all through, as good as its directions say, needs no direction: it is one of three axes.
+pub(super) fn upright(intent: &mut Intent, machine: &Machine) {
+    let Some(first) = intent.program.axes.direction() else { return };
+    let Some(axes) = Axes::new(&intent.program.axes.as_slice()[..first]) else { return };
+    let (z, near, mut worst) = ([0.0, 0.0, 1.0], near(machine), 0.0f64);
+    let stands = intent.program.steps.iter().all(|located| {
+        let strays = match &located.step {
+            Step::Rapid(targets) => named_direction(targets, first).map(|d| direction::angle(&d, &z)),
+            Step::Cut(cut) => cut.curve.strays(first, &z),
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => Some(0.0),
+        };
+        worst = worst.max(strays.unwrap_or(f64::INFINITY));
+        worst <= near
+    });
+    if !stands {
+        return;
+    }
+    let place = |p: &Position| [p[0], p[1], p[2], 0.0, 0.0, 0.0];
+    for located in &mut intent.program.steps {
+        match &mut located.step {
+            Step::Rapid(targets) => targets.retain(|(axis, _)| *axis < first),
+            Step::Cut(cut) => {
+                if let Curve::Arc(arc) = &cut.curve {
+                    cut.curve = Curve::Arc(arc.mapped_along(place));
+                } else if let Some(curve) = cut.curve.mapped(PLACE, place) {
+                    cut.curve = curve;
+                }
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
+    intent.program.steps.retain(|located| located.step != Step::Rapid(Vec::new()));
+    intent.program.axes = axes;
+    intent.tilt_error = Bound { rad: worst, ..Bound::ZERO };
+}
+
+/// Writes an intent of five axes in tilted planes, where the machine has them and the tool turns at rapid only. Where it does not,
+/// the answer says so, if there is a plane in which the program could cut, or another reason why the tip is led.
 ///
 /// # Errors
-/// No tool is called, the machine file states no home for Z, or rounding turns the tool too far.
-pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
-    let Some(first) = intent.program.axes.direction() else { return Ok(()) };
+/// No tool is called, the machine file states no home for Z, or the tool cannot be cleared or turned well enough.
+pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diagnostic>, Diagnostics> {
+    let Some(first) = intent.program.axes.direction() else { return Ok(None) };
     let counts = |name: &str| {
         machine
             .axes
@@ -51,33 +114,36 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
             .any(|(axis, _)| axis.as_str() == name && !machine.limits(*axis).reversed)
     };
     if machine.frame.plane.is_empty() || !["X", "Y", "Z"].into_iter().all(counts) {
-        return Ok(());
+        return Ok(None);
     }
-    let Some(axes) = Axes::new(&intent.program.axes.as_slice()[..first]) else { return Ok(()) };
-    if !turns_at_rapid(&intent.program.steps, first) {
-        return Ok(());
+    let Some(axes) = Axes::new(&intent.program.axes.as_slice()[..first]) else { return Ok(None) };
+    if let Err(note) = turns_at_rapid(&intent.program.steps, first, near(machine)) {
+        return Ok(note);
     }
     let retracts = machine.with_axes(&axes)?.retracts(Z);
     let mut walk = Walk {
         first,
         machine,
+        near: near(machine),
         retracts,
         all: Vec::new(),
         plane: None,
         at: None,
         called: false,
         told: false,
+        tilted: false,
         error: Bound::ZERO,
     };
     let steps = &intent.program.steps;
     for located in steps {
         if walk.step(located)?.is_none() {
-            // An arc that no plane of the control fits: its tip is led.
-            return Ok(());
+            let message = "no word of the control makes this move in a tilted plane: the tip of the tool is led all through";
+            return Ok(Some(Diagnostic::note("tip-led", message).at(located.span, "")));
         }
     }
     if let Some(last) = steps.last() {
         walk.leave(last.span);
+        walk.straighten(last.span);
     }
     let (all, error) = (walk.all, walk.error);
     intent.program.steps = all;
@@ -85,7 +151,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     intent.tilt_error = error;
     let (degrees, allowed) = (error.rad * DEGREES, machine.orientation.tolerance);
     if degrees <= allowed {
-        return Ok(());
+        return Ok(None);
     }
     let message = format!(
         "angles of {} decimals turn the tool by up to {degrees:.4} degrees from where it should be, more than {allowed}",
@@ -96,40 +162,44 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
         .into())
 }
 
-/// Whether every path keeps the direction with which the rapid before it came, and each tool comes by a rapid.
-fn turns_at_rapid(steps: &[Located<f64, Curve>], first: usize) -> bool {
+/// Whether every path keeps the direction with which the rapid before it came, and each tool comes by a rapid. Otherwise: where the
+/// first does not, if another one that is tilted does.
+fn turns_at_rapid(steps: &[Located<f64, Curve>], first: usize, near: f64) -> Result<(), Option<Diagnostic>> {
     let mut stands: Option<[f64; 3]> = None;
-    steps.iter().all(|located| match &located.step {
-        Step::Tool(_) => {
-            stands = None;
-            true
-        }
-        Step::Rapid(targets) => {
-            stands = named_direction(targets, first);
-            stands.is_some()
-        }
-        Step::Cut(cut) => {
-            let keeps = |p: &Position| {
-                stands.is_some_and(|d| direction::angle(&d, &[p[first], p[first + 1], p[first + 2]]) <= SAME)
-            };
-            match &cut.curve {
-                Curve::Lines(line) => keeps(&line.start) && line.points().all(|p| keeps(&p)),
-                Curve::Arc(arc) => keeps(&arc.start()) && keeps(&arc.end()),
-                Curve::Nurbs(nurbs) => nurbs.points().iter().all(keeps),
-                Curve::Polynomial(pieces) => {
-                    pieces.iter().all(|piece| piece.control_points().iter().all(keeps))
+    let (mut turns, mut tilted) = (None, false);
+    for located in steps {
+        match &located.step {
+            Step::Tool(_) => stands = None,
+            Step::Rapid(targets) => {
+                let named = named_direction(targets, first);
+                let known = |d: &[f64; 3]| {
+                    let angle = |stands: &[f64; 3]| direction::angle(stands, d);
+                    stands.filter(|stands| angle(stands) <= near).unwrap_or(squared(*d, near))
+                };
+                stands = named.as_ref().map(known);
+                if stands.is_none() {
+                    turns = turns.or(Some(located.span));
                 }
-                // No input has these in five axes.
-                Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => false,
             }
+            Step::Cut(cut) => {
+                let strays = stands.and_then(|d| cut.curve.strays(first, &d));
+                if strays.is_some_and(|strays| strays <= near) {
+                    tilted |= stands.is_some_and(|[x, y, _]| x != 0.0 || y != 0.0);
+                } else {
+                    turns = turns.or(Some(located.span));
+                }
+            }
+            Step::Comment(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
         }
-        Step::Comment(_)
-        | Step::Spindle(_)
-        | Step::Coolant
-        | Step::Home(_)
-        | Step::Shift(_)
-        | Step::Auxiliary(_) => true,
-    })
+    }
+    let Some(span) = turns else { return Ok(()) };
+    let message = "the tool turns here while it cuts: its tip is led all through, in no tilted plane";
+    Err(tilted.then(|| Diagnostic::note("tip-led", message).at(span, "")))
 }
 
 /// The direction that a rapid names.
@@ -140,7 +210,7 @@ fn named_direction(targets: &[(usize, f64)], first: usize) -> Option<[f64; 3]> {
 
 /// A plane that is in force.
 struct Tilted {
-    /// The direction that was asked for.
+    /// The direction that it was tilted for.
     asked: [f64; 3],
     rotation: Rotation,
     /// The greatest height in it so far, mm.
@@ -150,6 +220,8 @@ struct Tilted {
 struct Walk<'m> {
     first: usize,
     machine: &'m Machine,
+    /// How far directions of one plane may be apart, radians.
+    near: f64,
     /// Whether Z has a home to retract to.
     retracts: bool,
     all: All,
@@ -159,6 +231,8 @@ struct Walk<'m> {
     called: bool,
     /// Whether no section began since the last move: its first rapid names every axis.
     told: bool,
+    /// Whether the last plane was not upright.
+    tilted: bool,
     error: Bound,
 }
 
@@ -190,6 +264,8 @@ impl Walk<'_> {
                 let Some(plane) = &mut self.plane else { return Ok(None) };
                 let Some((curve, off)) = plane.counted(&cut.curve) else { return Ok(None) };
                 let Some((_, [x, y, z, ..])) = curve.ends() else { return Ok(None) };
+                let strays = cut.curve.strays(self.first, &plane.rotation.axis());
+                self.error.rad = self.error.rad.max(strays.unwrap_or(0.0));
                 self.error.mm = self.error.mm.max(off);
                 plane.top = plane.top.max(curve.greatest(Z));
                 self.at = Some(plane.rotation.out([x, y, z]));
@@ -211,10 +287,11 @@ impl Walk<'_> {
 
     /// Goes to a place at rapid with the tool in a direction.
     fn rapid(&mut self, place: [f64; 3], asked: [f64; 3], span: Span) -> Result<(), Diagnostics> {
-        let turns = self.plane.as_ref().is_none_or(|plane| SAME < direction::angle(&plane.asked, &asked));
+        let apart = |plane: &Tilted| direction::angle(&plane.asked, &asked);
+        let turns = self.plane.as_ref().is_none_or(|plane| self.near < apart(plane));
         if turns {
             self.leave(span);
-            self.enter(asked, span)?;
+            self.enter(squared(asked, self.near), span)?;
         }
         let Some(plane) = &mut self.plane else { return Ok(()) };
         let turned = direction::angle(&plane.rotation.axis(), &asked);
@@ -251,10 +328,18 @@ impl Walk<'_> {
                 .hint("state [axis.Z] home, or plane = [] under [program] where the tip is to be led")
                 .into());
         }
-        let order = self.machine.orientation.plane_order;
+        let Orientation { plane_order: order, plane_approach: approach, .. } = self.machine.orientation;
+        if asked[Z] < 0.0 && approach == PlaneApproach::Together {
+            let message = "the tool comes from below here, and Z would take a head that tilts through the work on its way home";
+            return Err(Diagnostic::refusal("plane-from-below", message)
+                .at(span, "")
+                .hint("[orientation] plane_approach = \"over\" is for a table that tilts; plane = [] under [program] leads the tip")
+                .into());
+        }
         let digits = self.machine.digits.rotary;
         let angles = Rotation::level(asked).angles(order).map(|angle| rounded(angle, digits));
         self.push(Step::Auxiliary(Auxiliary::Plane(angles)), span);
+        self.tilted = angles != [0.0; PLACE];
         let rotation = Rotation::of(order, angles);
         self.plane = Some(Tilted { asked, rotation, top: f64::NEG_INFINITY });
         Ok(())
@@ -272,6 +357,14 @@ impl Walk<'_> {
         }
         self.push(Step::Home(Z), span);
         self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+    }
+
+    /// Turns the tool upright at the end, with Z at home: the next program may know nothing of planes.
+    fn straighten(&mut self, span: Span) {
+        if self.tilted {
+            self.push(Step::Auxiliary(Auxiliary::Plane([0.0; PLACE])), span);
+            self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+        }
     }
 }
 
@@ -292,19 +385,11 @@ impl Tilted {
             let [x, y, z] = self.rotation.into_frame([p[0], p[1], p[2]]);
             [x, y, z, 0.0, 0.0, 0.0]
         };
-        let counted = match curve {
-            Curve::Lines(line) => Curve::Lines(line.mapped(PLACE, place)),
-            Curve::Arc(arc) => {
-                let (arc, off) = self.arc(arc);
-                return Some((Curve::Arc(arc), off));
-            }
-            Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
-            Curve::Polynomial(pieces) => {
-                Curve::Polynomial(pieces.iter().map(|piece| piece.mapped(place)).collect())
-            }
-            Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => return None,
-        };
-        Some((counted, 0.0))
+        if let Curve::Arc(arc) = curve {
+            let (arc, off) = self.arc(arc);
+            return Some((Curve::Arc(arc), off));
+        }
+        Some((curve.mapped(PLACE, place)?, 0.0))
     }
 
     /// An arc as the plane counts it, and how far that is from it at most, mm: about an axis that is θ off, its places are

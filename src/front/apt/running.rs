@@ -1,0 +1,165 @@
+//! Whether a tool is in the spindle, the spindle turns and the coolant flows where something is cut.
+//!
+//! A tool change stops spindle and coolant on most machines, and what was on before it holds for the tool before it: a file that
+//! does not say them again is written as it stands, with a warning.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::ir::{Curve, Step};
+use crate::source::Span;
+
+/// What became of the spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Spindle {
+    /// Nothing was said of it.
+    #[default]
+    Unsaid,
+    /// It was started, rev/min.
+    Turns(f64),
+    /// It was stopped.
+    Stopped,
+    /// A tool was called.
+    Called,
+}
+
+/// What became of the coolant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Coolant {
+    /// It is off, or was never on.
+    #[default]
+    Off,
+    /// It was started.
+    Flows,
+    /// It was on, and a tool was called.
+    Called,
+}
+
+/// What runs, and what is to be said of it.
+#[derive(Debug, Default)]
+pub(super) struct Running {
+    tool: Option<u32>,
+    spindle: Spindle,
+    coolant: Coolant,
+    /// Whether it was told that the spindle stands.
+    told: bool,
+    /// Whether the tool that was called last has moved.
+    moved: bool,
+    /// Whether anything has moved.
+    begun: bool,
+    /// Whether the frame has changed since the last rapid.
+    reframed: bool,
+    /// What there is to say.
+    pub(super) diagnostics: Diagnostics,
+}
+
+impl Running {
+    /// The spindle starts or stops.
+    pub(super) fn spindle(&mut self, spindle: Spindle) {
+        self.spindle = spindle;
+        self.told = false;
+    }
+
+    /// The coolant starts or stops.
+    pub(super) fn coolant(&mut self, coolant: Coolant) {
+        self.coolant = coolant;
+    }
+
+    /// A tool is called.
+    pub(super) fn tool(&mut self, number: u32) {
+        self.tool = Some(number);
+        self.moved = false;
+        self.spindle(Spindle::Called);
+        if self.coolant != Coolant::Off {
+            self.coolant = Coolant::Called;
+        }
+    }
+
+    /// The tool that was called last.
+    pub(super) fn called(&self) -> Option<u32> {
+        self.tool
+    }
+
+    /// What has to be said again behind a second call of the same tool.
+    pub(super) fn again(&self) -> Vec<Step<f64, Curve>> {
+        let spindle = match self.spindle {
+            Spindle::Turns(rpm) => Some(Step::Spindle(rpm)),
+            Spindle::Unsaid | Spindle::Stopped | Spindle::Called => None,
+        };
+        spindle.into_iter().chain((self.coolant == Coolant::Flows).then_some(Step::Coolant)).collect()
+    }
+
+    /// Positions count in another frame from here on.
+    pub(super) fn reframed(&mut self) {
+        (self.reframed, self.moved) = (true, false);
+    }
+
+    /// Goes somewhere at rapid.
+    pub(super) fn rapid(&mut self, span: Span) {
+        self.begins(span);
+        (self.reframed, self.moved) = (false, true);
+    }
+
+    /// The first move of all: without a tool no length holds, and nothing goes home.
+    fn begins(&mut self, span: Span) {
+        if !self.begun && self.tool.is_none() {
+            let message = "the file moves and calls no tool before: the length that the control has holds, and Z goes home nowhere";
+            self.diagnostics.push(
+                Diagnostic::warning("tool-missing", message)
+                    .at(span, "")
+                    .hint("LOADTL calls one; see that the way to the first place is clear"),
+            );
+        }
+        self.begun = true;
+    }
+
+    /// Cuts, at `span`.
+    pub(super) fn cuts(&mut self, span: Span) {
+        self.begins(span);
+        if self.tool == Some(0) {
+            self.tool = None;
+            let message = "tool 0 is an empty spindle, and cuts here";
+            self.diagnostics.push(Diagnostic::error("tool-zero", message).at(span, ""));
+        } else if self.reframed {
+            let message =
+                "the first move in another frame cuts, and where the tool is in that frame nobody knows";
+            self.diagnostics.push(
+                Diagnostic::error("frame-cut", message)
+                    .at(span, "")
+                    .hint("RAPID before it, to a place above the work"),
+            );
+        } else if !self.moved
+            && let Some(tool) = self.tool
+        {
+            let message = format!(
+                "tool {tool} begins with a cut: over where that starts it comes down from its home, at its feed"
+            );
+            self.diagnostics.push(
+                Diagnostic::warning("cut-first", message)
+                    .at(span, "")
+                    .hint("RAPID before it, to a place above the work"),
+            );
+        }
+        (self.reframed, self.moved) = (false, true);
+        let tool = self.tool.map_or(String::new(), |tool| format!("tool {tool} cuts here, and "));
+        let message = match self.spindle {
+            Spindle::Turns(_) => None,
+            Spindle::Unsaid => Some(format!("{tool}nothing started the spindle before")),
+            Spindle::Called => Some(format!("{tool}nothing started the spindle since it was called")),
+            Spindle::Stopped => Some(format!("{tool}the spindle was stopped before")),
+        };
+        if let Some(message) = message.filter(|_| !self.told) {
+            self.told = true;
+            self.diagnostics.push(
+                Diagnostic::warning("spindle-missing", message)
+                    .at(span, "")
+                    .hint("SPINDL behind the tool call starts it; a tool change stops it"),
+            );
+        }
+        if self.coolant == Coolant::Called {
+            self.coolant = Coolant::Off;
+            let message = format!("{tool}the coolant, on before it was called, is not started again");
+            self.diagnostics.push(Diagnostic::warning("coolant-missing", message).at(span, "").hint(
+                "COOLNT/ON behind the tool call starts it; COOLNT/OFF before says that it is to be off",
+            ));
+        }
+    }
+}
