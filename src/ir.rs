@@ -12,9 +12,11 @@
 
 mod arc;
 mod curve;
+mod passed;
 
 pub use arc::{ArcBy, Circle, WrittenArc, sweep, turned_end};
 pub use curve::{Curve, Described, Logarithmic, Method, Polyline, ThroughKind};
+pub use passed::Passed;
 
 use crate::decimal::{Decimal, units_to_f64};
 use crate::diagnostic::Diagnostics;
@@ -22,6 +24,7 @@ use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
+use std::borrow::Borrow;
 
 /// A program: a name, its coordinates, its steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -190,10 +193,10 @@ pub enum Role {
     AsAsked,
 }
 
-impl Cut<f64, Curve> {
+impl<C: Borrow<Curve>> Cut<f64, C> {
     /// Whether the motion is used here: on every path, and on splines that were made of lines as asked.
     pub fn takes_motion(&self) -> bool {
-        match (self.role, &self.curve) {
+        match (self.role, self.curve.borrow()) {
             (Role::Path, _) => true,
             (Role::Approach, _) | (Role::AsAsked, Curve::Lines(_) | Curve::Arc(_)) => false,
             (

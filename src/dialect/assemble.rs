@@ -13,12 +13,27 @@ use crate::source::{SourceId, Span};
 use crate::units::{Axis, Kind, MAX_AXES};
 use std::collections::BTreeMap;
 
+/// A run of so many lines most likely goes on to the end of the text.
+const LONG_RUN: usize = 1 << 16;
+
+/// A line has at least so many bytes: an axis, a digit and its end.
+const LEAST_LINE: usize = 3;
+
+/// About how many more lines follow `count` of them in a text of so many bytes, so that a large program is read without
+/// moving it about.
+fn expected(count: usize, run: Span, size: usize) -> usize {
+    let (read, left) = (run.end.saturating_sub(run.start) as usize, size.saturating_sub(run.end as usize));
+    (count * left / read.max(1)).min(left / LEAST_LINE)
+}
+
 /// A program in the making.
 pub struct Assembler<'m> {
     /// The machine.
     pub machine: &'m Machine,
     /// Which text is read.
     pub source: SourceId,
+    /// How many bytes it has.
+    size: usize,
     /// How many decimals each axis has.
     pub digits: [u8; MAX_AXES],
     /// Where each axis is, in units of its last decimal.
@@ -55,7 +70,7 @@ pub struct Assembler<'m> {
 
 impl<'m> Assembler<'m> {
     /// An empty program.
-    pub fn new(machine: &'m Machine, source: SourceId) -> Assembler<'m> {
+    pub fn new(machine: &'m Machine, source: SourceId, text: &str) -> Assembler<'m> {
         let mut letters = [None; 26];
         for (i, (axis, _)) in machine.axes.as_slice().iter().enumerate() {
             if let [letter] = axis.as_str().as_bytes() {
@@ -65,6 +80,7 @@ impl<'m> Assembler<'m> {
         Assembler {
             machine,
             source,
+            size: text.len(),
             digits: machine.axis_digits(),
             position: [None; MAX_AXES],
             feed: None,
@@ -150,16 +166,18 @@ impl<'m> Assembler<'m> {
         let turned = |units: i64| if self.reversed[axis] { units.checked_neg() } else { Some(units) };
         let units = counted.and_then(turned).and_then(|units| units.checked_add(self.shift[axis]));
         if units.is_none() {
-            let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
-            self.error(
-                "digits-too-many",
-                format!(
-                    "{name} {value} has more decimals than the {digits} that the machine file gives this axis"
-                ),
-                range,
-            );
+            self.too_many_digits(axis, value, range);
         }
         units
+    }
+
+    #[cold]
+    fn too_many_digits(&mut self, axis: usize, value: Decimal, range: std::ops::Range<usize>) {
+        let (name, digits) = (self.machine.axes.name(axis), self.digits[axis]);
+        let message = format!(
+            "{name} {value} has more decimals than the {digits} that the machine file gives this axis"
+        );
+        self.error("digits-too-many", message, range);
     }
 
     /// The number that stands in the text for a position.
@@ -337,6 +355,11 @@ impl<'m> Assembler<'m> {
             ));
         }
         if let Some((points, whole)) = &mut self.run {
+            if points.lines.len() == LONG_RUN {
+                let more = expected(LONG_RUN, *whole, self.size);
+                points.lines.reserve(more);
+                points.units.reserve(more * stride);
+            }
             points.units.extend_from_slice(&target[..stride]);
             points.lines.push(line);
             if self.inverse {

@@ -1,5 +1,6 @@
 //! Lines of a program and their numbers: what all readers share.
 
+use crate::decimal::{MOST_EXACT, digits};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 use std::ops::Range;
@@ -232,12 +233,11 @@ impl Numbering {
 /// The digits at the start of `text` as a block number, and how long they are.
 #[inline]
 pub fn block_number(text: &str) -> Option<(u64, usize)> {
-    let digits = text.bytes().map(|byte| byte.wrapping_sub(b'0')).take_while(|digit| *digit <= 9);
-    let next = |(number, count): (u64, usize), digit| {
-        Some((number.checked_mul(10)?.checked_add(u64::from(digit))?, count + 1))
-    };
-    let mut digits = digits;
-    digits.try_fold((0, 0), next).filter(|(_, count)| 0 < *count)
+    let (count, mut number) = digits(text.as_bytes(), 0);
+    if MOST_EXACT < count {
+        number = text[..count].parse().ok()?;
+    }
+    (0 < count).then_some((number, count))
 }
 
 /// About how many bytes a program takes, so that a large one is written without moving it about.

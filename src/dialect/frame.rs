@@ -23,8 +23,8 @@ pub struct Frame<'m> {
     pending: Vec<&'m Template>,
     shifting: Option<Shifting>,
     assign: Template,
-    /// What the lines that may stand behind the header begin and end with.
-    outlines: Vec<(String, String)>,
+    /// What the lines that may stand behind the header begin and end with, by the first byte of a line.
+    outlines: Vec<Vec<Outline>>,
     started: bool,
     name: Option<String>,
 }
@@ -64,8 +64,13 @@ impl<'m> Frame<'m> {
         };
         let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
         let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
-        frame.outlines =
-            all.map(Template::outline).map(|(start, end)| (start.to_owned(), end.to_owned())).collect();
+        let outlines: Vec<Outline> = all.map(Outline::new).collect();
+        let beginning = |byte: u8| {
+            let fitting =
+                outlines.iter().filter(|outline| outline.start.bytes().next().is_none_or(|b| b == byte));
+            fitting.cloned().collect()
+        };
+        frame.outlines = (0..=u8::MAX).map(beginning).collect();
         frame
     }
 
@@ -169,8 +174,8 @@ impl<'m> Frame<'m> {
             }
         }
         // Blocks of moves are by far the most, and hardly one of these lines begins and ends like one.
-        if !self.outlines.iter().any(|(start, end)| begins_with(text, start) && text.ends_with(end.as_str()))
-        {
+        let first = text.bytes().next().unwrap_or_default();
+        if !self.outlines[usize::from(first)].iter().any(|outline| outline.fits(text)) {
             return Met::Other;
         }
         if let Some(template) = self.end.first().copied()
@@ -405,12 +410,26 @@ impl<'m> Frame<'m> {
     }
 }
 
-/// Whether a line begins with a text; mostly the first byte decides.
-#[inline]
-fn begins_with(line: &str, start: &str) -> bool {
-    match (start.as_bytes().first(), line.as_bytes().first()) {
-        (Some(expected), Some(found)) if expected != found => false,
-        _ => line.starts_with(start),
+/// What a line of the machine file begins and ends with, whatever is filled in.
+#[derive(Clone)]
+struct Outline {
+    /// The last byte, where it has one: mostly it decides.
+    last: Option<u8>,
+    start: String,
+    end: String,
+}
+
+impl Outline {
+    fn new(template: &Template) -> Outline {
+        let (start, end) = template.outline();
+        Outline { last: end.bytes().next_back(), start: start.to_owned(), end: end.to_owned() }
+    }
+
+    #[inline]
+    fn fits(&self, line: &str) -> bool {
+        (self.last.is_none() || self.last == line.bytes().next_back())
+            && line.starts_with(self.start.as_str())
+            && line.ends_with(self.end.as_str())
     }
 }
 

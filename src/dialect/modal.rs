@@ -84,22 +84,25 @@ impl<'m> Modal<'m> {
     }
 
     /// Writes text.
+    #[inline]
     pub fn text(&mut self, text: &str) {
         self.out.extend_from_slice(text.as_bytes());
     }
 
     /// Starts a block with its number, where the machine numbers its blocks.
+    #[inline]
     pub fn begin(&mut self, prefix: &str) {
         let step = self.machine.text.number_step;
         if step != 0 {
             self.text(prefix);
-            self.text(itoa::Buffer::new().format(self.number));
+            write_units(&mut self.out, self.number.into(), 0, Spelling::PLAIN);
             self.gap();
             self.number = self.number.wrapping_add(step);
         }
     }
 
     /// Ends a block.
+    #[inline]
     pub fn end(&mut self) {
         if self.out.last() == Some(&b' ') {
             self.out.pop();
@@ -108,8 +111,10 @@ impl<'m> Modal<'m> {
     }
 
     /// Ends a line.
+    #[inline]
     pub fn end_line(&mut self) {
-        self.text(self.machine.text.line_end.text());
+        // One byte or two: too few for a copy of so many bytes.
+        self.out.extend(self.machine.text.line_end.text().bytes());
     }
 
     /// Ends a word. Where blocks have no blanks, a number ends where a letter begins.
@@ -264,19 +269,20 @@ impl<'m> Modal<'m> {
     /// The words of the axes that a straight move moves; the first where it moves none, since a block needs one. The tool's
     /// direction is never modal.
     #[inline]
-    pub fn moved_axes(&mut self, point: &Units, count: usize) {
+    pub fn moved_axes(&mut self, point: &[i64]) {
+        let places = self.direction.unwrap_or(point.len());
         let mut moved = false;
-        for i in 0..self.direction.unwrap_or(count) {
-            if self.position[i] != Some(point[i]) {
-                self.axis(i, point[i]);
+        for (i, units) in point.iter().enumerate().take(places) {
+            if self.position[i] != Some(*units) {
+                self.axis(i, *units);
                 moved = true;
             }
         }
         if !moved {
             self.axis(0, point[0]);
         }
-        for i in self.direction.unwrap_or(count)..count {
-            self.axis(i, point[i]);
+        for (i, units) in point.iter().enumerate().skip(places) {
+            self.axis(i, *units);
         }
     }
 
@@ -302,9 +308,10 @@ impl<'m> Modal<'m> {
     }
 
     /// Takes a point as reached.
-    pub fn reached(&mut self, point: &Units) {
-        for i in 0..self.machine.axes.count() {
-            self.position[i] = Some(point[i]);
+    #[inline]
+    pub fn reached(&mut self, point: &[i64]) {
+        for (known, units) in self.position.iter_mut().zip(point).take(self.machine.axes.count()) {
+            *known = Some(*units);
         }
     }
 }

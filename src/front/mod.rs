@@ -50,7 +50,7 @@ pub const LANGUAGES: &[Language] = &[
         parse: |sources| cutter::parse_program(input(sources)?, SourceId::INPUT),
         understand: |sources| cutter::parse(input(sources)?, SourceId::INPUT).map(|job| job.intent()),
         files: no_files,
-        recognise: |text| has_table(text, "[cutter]"),
+        recognise: |text| has_table(text, &["[cutter]"]),
         windows_1252: false,
         grammar: "cutter",
     },
@@ -60,7 +60,7 @@ pub const LANGUAGES: &[Language] = &[
         parse: |sources| job::parse_program(sources, SourceId::INPUT),
         understand: |sources| job::parse(sources, SourceId::INPUT).map(|job| job.intent()),
         files: job::named,
-        recognise: |text| has_table(text, "[[curve]]") || has_table(text, "[curve]"),
+        recognise: |text| has_table(text, &["[[curve]]", "[curve]"]),
         windows_1252: false,
         grammar: "job",
     },
@@ -92,11 +92,14 @@ fn no_files(_: &Source) -> Vec<String> {
     Vec::new()
 }
 
-/// Whether a line of the text begins a table.
-fn has_table(text: &str, table: &str) -> bool {
+/// Whether a line of the text begins one of these tables.
+fn has_table(text: &str, tables: &[&str]) -> bool {
     let text = text.trim_start_matches('\u{feff}');
-    memchr::memmem::find_iter(text.as_bytes(), table)
-        .any(|at| text[..at].trim_end_matches([' ', '\t']).chars().next_back().is_none_or(|c| c == '\n'))
+    memchr::memchr_iter(b'[', text.as_bytes()).any(|at| {
+        let (before, behind) = text.split_at(at);
+        tables.iter().any(|table| behind.starts_with(table))
+            && before.trim_end_matches([' ', '\t']).chars().next_back().is_none_or(|c| c == '\n')
+    })
 }
 
 /// CL data of one CAM system; its text is recognised as `apt`, which finds the system.

@@ -207,6 +207,7 @@ pub enum LineEnd {
 
 impl LineEnd {
     /// The characters.
+    #[inline]
     pub fn text(self) -> &'static str {
         match self {
             LineEnd::Lf => "\n",

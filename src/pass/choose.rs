@@ -6,7 +6,7 @@
 use super::{convert, interpolate, place, settle};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{Form, Motion};
-use crate::ir::{Curve, Cut, Described, Intent, Method, Program, Role};
+use crate::ir::{Curve, Cut, Described, Intent, Method, Passed, Role};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::Axis;
 
@@ -143,10 +143,10 @@ fn blocks(intent: &Intent, form: Form, machine: &Machine, tolerance: f64) -> Res
 }
 
 /// How many blocks the paths of a converted program take, lines as asked among them.
-fn count(program: &Program<f64, Curve>) -> usize {
+fn count(program: &Passed<'_>) -> usize {
     let cuts = program.steps.iter().filter_map(|located| located.step.cut());
     cuts.filter(|cut| cut.role != Role::Approach)
-        .map(|cut| match &cut.curve {
+        .map(|cut| match &*cut.curve {
             Curve::Lines(line) | Curve::Through(_, line) => line.count(),
             Curve::Polynomial(pieces) => pieces.len(),
             Curve::Arc(_) => 1,

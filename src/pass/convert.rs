@@ -12,32 +12,31 @@ pub mod spline;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dialect::Form;
-use crate::ir::{Curve, Cut, Located, Program, Step};
+use crate::ir::{Curve, Cut, Located, Passed, Program, Step};
 use crate::machine::Machine;
 use crate::units::Axes;
+use std::borrow::Cow;
 
 /// The program with every path in `form`. Approaches stay lines, and where the motion was not `asked` for so do paths of
 /// lines.
 ///
 /// # Errors
 /// A curve cannot take the form.
-pub fn convert(
-    program: Program<f64, Curve>,
+pub fn convert<'c>(
+    program: Passed<'c>,
     form: Form,
     machine: &Machine,
     asked: bool,
-) -> Result<Program<f64, Curve>, Diagnostics> {
+) -> Result<Passed<'c>, Diagnostics> {
     let axes = program.axes;
     let mut steps = Vec::with_capacity(program.steps.len());
     for Located { step, span } in program.steps {
         let step = match step {
-            Step::Cut(cut) if cut.takes_motion() => {
+            Step::Cut(cut) if cut.takes_motion() && !stays(&cut.curve, form, asked) => {
                 let Cut { feed, role, curve } = cut;
-                let stays = !asked && matches!(curve, Curve::Lines(_));
-                let form = if stays { Form::Lines } else { form };
-                let curve = to_form(curve, form, &axes, machine)
+                let curve = to_form(curve.into_owned(), form, &axes, machine)
                     .map_err(|message| Diagnostic::refusal("form-out-of-reach", message).at(span, ""))?;
-                Step::Cut(Cut { feed, role, curve })
+                Step::Cut(Cut { feed, role, curve: Cow::Owned(curve) })
             }
             step @ (Step::Comment(_)
             | Step::Tool(_)
@@ -54,10 +53,24 @@ pub fn convert(
     Ok(Program { steps, ..program })
 }
 
+/// Whether a curve has the form already, or is to stay lines.
+fn stays(curve: &Curve, form: Form, asked: bool) -> bool {
+    match (curve, form) {
+        (Curve::Lines(_), form) => !asked || form == Form::Lines,
+        (Curve::Arc(_), _) | (Curve::Polynomial(_), Form::Polynomial { .. }) => true,
+        (
+            Curve::Polynomial(_)
+            | Curve::Nurbs(_)
+            | Curve::Through(..)
+            | Curve::Logarithmic(_)
+            | Curve::Formula(_),
+            _,
+        ) => false,
+    }
+}
+
 fn to_form(curve: Curve, form: Form, axes: &Axes, machine: &Machine) -> Result<Curve, String> {
     match (curve, form) {
-        (curve @ Curve::Lines(_), Form::Lines) | (curve @ Curve::Arc(_), _) => Ok(curve),
-        (curve @ Curve::Polynomial(_), Form::Polynomial { .. }) => Ok(curve),
         (Curve::Through(_, line), Form::Through(kind)) | (Curve::Lines(line), Form::Through(kind)) => {
             Ok(Curve::Through(kind, line))
         }
@@ -71,7 +84,9 @@ fn to_form(curve: Curve, form: Form, axes: &Axes, machine: &Machine) -> Result<C
         (Curve::Nurbs(nurbs), Form::Nurbs) => spline::adapted(nurbs, machine).map(Curve::Nurbs),
         (curve @ Curve::Nurbs(_), Form::Polynomial { .. }) => Ok(Curve::Polynomial(curve.pieces())),
         (
-            Curve::Polynomial(_)
+            Curve::Lines(_)
+            | Curve::Arc(_)
+            | Curve::Polynomial(_)
             | Curve::Nurbs(_)
             | Curve::Through(..)
             | Curve::Logarithmic(_)

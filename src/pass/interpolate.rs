@@ -6,7 +6,7 @@ use crate::dialect::Form;
 use crate::geom::bezier::Bezier;
 use crate::geom::fit::{self, FitError};
 use crate::geom::logcurve::LogCurve;
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Polyline, Program, Role, Step};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Method, Passed, Polyline, Program, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
 use crate::pass::approximate::{Frame, approximate};
 use crate::pass::arcs;
@@ -14,20 +14,21 @@ use crate::pass::settle::{steps, through_points};
 use crate::pass::stretch::{Stretch, of_curve, rate, stretch_of, stretches};
 use crate::source::Span;
 use crate::units::DEGREES;
+use std::borrow::Cow;
 
 /// The program with every logarithmic curve followed within `tolerance` mm, in shapes that `form` can be made of.
 /// Points for the control's own spline follow from the tolerance `asked`, which rounding does not narrow. Other curves are
-/// left as they are where the form takes them exactly and `exact` says that it may.
+/// left as they are where the form takes them exactly and `exact` says that it may. Curves that stay are the intent's own.
 ///
 /// # Errors
 /// The tolerance is out of reach.
-pub fn interpolate(
-    intent: &Intent,
+pub fn interpolate<'i>(
+    intent: &'i Intent,
     form: Form,
     machine: &Machine,
     (tolerance, asked): (f64, f64),
     exact: bool,
-) -> Result<Program<f64, Curve>, Diagnostics> {
+) -> Result<Passed<'i>, Diagnostics> {
     let mut steps = Vec::with_capacity(intent.program.steps.len());
     // Flutes and passes are one curve, indexed and shifted: it is fitted once.
     let modulo = machine.axes.as_slice().iter().any(|(axis, _)| machine.limits(*axis).modulo);
@@ -60,7 +61,7 @@ pub fn interpolate(
                     cuts = cuts.into_iter().rev().map(|(feed, curve)| (feed, reversed(curve))).collect();
                 }
                 steps.extend(cuts.into_iter().map(|(feed, curve)| Located {
-                    step: Step::Cut(Cut { feed, role: *role, curve }),
+                    step: Step::Cut(Cut { feed, role: *role, curve: Cow::Owned(curve) }),
                     span: located.span,
                 }));
             }
@@ -73,7 +74,7 @@ pub fn interpolate(
                     None => vec![Curve::Lines(arcs::lines(arc, axes.count(), tolerance))],
                 };
                 steps.extend(curves.into_iter().map(|curve| Located {
-                    step: Step::Cut(Cut { feed: *feed, role: *role, curve }),
+                    step: Step::Cut(Cut { feed: *feed, role: *role, curve: Cow::Owned(curve) }),
                     span: located.span,
                 }));
             }
@@ -87,7 +88,7 @@ pub fn interpolate(
                 let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
                 let curve = approximate(curve, form, &frame, tolerance, exact)
                     .map_err(|diagnostic| diagnostic.at(located.span, ""))?;
-                let step = Step::Cut(Cut { feed, role: *role, curve });
+                let step = Step::Cut(Cut { feed, role: *role, curve: Cow::Owned(curve) });
                 steps.push(Located { step, span: located.span });
             }
             step @ (Step::Comment(_)
@@ -98,7 +99,7 @@ pub fn interpolate(
             | Step::Shift(_)
             | Step::Auxiliary(_)
             | Step::Rapid(_)
-            | Step::Cut(_)) => steps.push(Located { step: step.clone(), span: located.span }),
+            | Step::Cut(_)) => steps.push(Located { step: step.borrowed(), span: located.span }),
         }
     }
     let Program { name, number, axes, .. } = &intent.program;

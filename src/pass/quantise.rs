@@ -28,13 +28,14 @@ use crate::geom::arc::{Arc, Plane};
 use crate::geom::bezier::Bezier;
 use crate::geom::nurbs::Nurbs;
 use crate::ir::{
-    ArcBy, Auxiliary, COEFFICIENTS, Circle, Curve, Cut, Decimals, Located, Polyline, PolynomialBlock,
+    ArcBy, Auxiliary, COEFFICIENTS, Circle, Curve, Cut, Decimals, Located, Passed, Polyline, PolynomialBlock,
     Program, Role, Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
     turned_end,
 };
 use crate::machine::Machine;
 use crate::setup::wrapped;
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
+use std::borrow::Cow;
 
 /// The most decimals of a coefficient.
 const MAX_COEFFICIENT_DIGITS: u8 = 12;
@@ -63,7 +64,7 @@ struct Quantiser<'m> {
 /// # Errors
 /// A number is too large for the machine's decimals, or a feed rounds to zero.
 pub fn quantise(
-    program: Program<f64, Curve>,
+    program: Passed<'_>,
     form: Form,
     machine: &Machine,
     tolerance: f64,
@@ -187,7 +188,7 @@ impl Quantiser<'_> {
         }
     }
 
-    fn step(&mut self, step: Step<f64, Curve>) -> Result<Step<Decimal, Written>, Unwritable> {
+    fn step(&mut self, step: Step<f64, Cow<'_, Curve>>) -> Result<Step<Decimal, Written>, Unwritable> {
         let rate = |x: f64| Decimal::round(x, self.machine.digits.feed).ok_or(Unwritable);
         Ok(match step {
             Step::Comment(text) => Step::Comment(text),
@@ -227,21 +228,21 @@ impl Quantiser<'_> {
                 Step::Rapid(rounded)
             }
             Step::Cut(Cut { feed, role, curve }) => {
-                let timed = matches!(&curve, Curve::Lines(line) if !line.rates.is_empty());
+                let timed = matches!(&*curve, Curve::Lines(line) if !line.rates.is_empty());
                 let feed = if timed { None } else { feed.map(rate).transpose()? };
-                Step::Cut(Cut { feed, role, curve: self.curve(curve, role)? })
+                Step::Cut(Cut { feed, role, curve: self.curve(&curve, role)? })
             }
         })
     }
 
-    fn curve(&mut self, curve: Curve, role: Role) -> Result<Written, Unwritable> {
+    fn curve(&mut self, curve: &Curve, role: Role) -> Result<Written, Unwritable> {
         let loose = std::mem::take(&mut self.loose);
         match curve {
-            Curve::Lines(line) => Ok(Written::Lines(self.points(&line)?)),
-            Curve::Arc(arc) => self.arc(&arc, loose),
-            Curve::Through(kind, line) => Ok(Written::Through(kind, self.points(&line)?)),
-            Curve::Polynomial(pieces) => self.polynomial(&pieces, role != Role::Approach && self.closing),
-            Curve::Nurbs(nurbs) => self.nurbs(&nurbs),
+            Curve::Lines(line) => Ok(Written::Lines(self.points(line)?)),
+            Curve::Arc(arc) => self.arc(arc, loose),
+            Curve::Through(kind, line) => Ok(Written::Through(*kind, self.points(line)?)),
+            Curve::Polynomial(pieces) => self.polynomial(pieces, role != Role::Approach && self.closing),
+            Curve::Nurbs(nurbs) => self.nurbs(nurbs),
             Curve::Logarithmic(_) | Curve::Formula(_) => Err(Unwritable), // `interpolate` left none
         }
     }

@@ -104,14 +104,14 @@ fn stages(sources: &Sources, machine: &Machine, times: &mut Times) {
     let machine = machine.with_axes(&intent.program.axes).unwrap_or_else(|error| told(error));
     let motion = machine.dialect.motion("linear").expect("lines");
     let (tolerance, form) = (machine.tolerance, motion.form);
-    let (intent, program) = times.stage("passes", || {
+    let intent = times.stage("settle", || {
         let intent = pass::place::place(intent, &machine).unwrap_or_else(|error| told(error));
-        let intent = pass::settle::settle(intent, form, false, tolerance).unwrap_or_else(|error| told(error));
+        pass::settle::settle(intent, form, false, tolerance).unwrap_or_else(|error| told(error))
+    });
+    let program = times.stage("convert", || {
         let program = pass::interpolate::interpolate(&intent, form, &machine, (tolerance, tolerance), true)
             .unwrap_or_else(|error| told(error));
-        let program =
-            pass::convert::convert(program, form, &machine, false).unwrap_or_else(|error| told(error));
-        (intent, program)
+        pass::convert::convert(program, form, &machine, false).unwrap_or_else(|error| told(error))
     });
     let legal = times.stage("quantise", || {
         pass::quantise::quantise(program, form, &machine, tolerance, intent.radius())

@@ -19,7 +19,7 @@
 mod arcs;
 mod closing;
 
-use super::words::{Word, cut, is_continuation, word};
+use super::words::{Word, coordinate, cut, is_continuation, word};
 use crate::decimal::{Decimal, Spelling};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::Reading;
@@ -55,16 +55,23 @@ fn signed(value: Decimal) -> String {
     String::from_utf8(out).unwrap_or_default()
 }
 
+/// The coefficients of a block.
+#[derive(Default)]
+struct Coefficients {
+    /// K1, K2, K3 of each axis.
+    values: [[Option<Decimal>; 3]; MAX_AXES],
+    /// Where the first of them stands.
+    places: [(usize, usize); MAX_AXES],
+}
+
 /// What one block says, L or SPL.
 struct Block {
     named: [(usize, i64); MAX_AXES],
     /// Where each of them stands.
     places: [(usize, usize); MAX_AXES],
     count: usize,
-    /// K1, K2, K3 of each axis.
-    coefficients: [[Option<Decimal>; 3]; MAX_AXES],
-    /// Where the first of them stands.
-    coefficient_places: [(usize, usize); MAX_AXES],
+    /// Few blocks have any.
+    coefficients: Option<Box<Coefficients>>,
     feed: Option<Decimal>,
     rapid: bool,
     /// TX TY TZ.
@@ -86,8 +93,7 @@ impl Block {
             named: [(0, 0); MAX_AXES],
             places: [(0, 0); MAX_AXES],
             count: 0,
-            coefficients: [[None; 3]; MAX_AXES],
-            coefficient_places: [(0, 0); MAX_AXES],
+            coefficients: None,
             feed: None,
             rapid: false,
             direction: [None; 3],
@@ -131,7 +137,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
-        assembler: Assembler::new(machine, source),
+        assembler: Assembler::new(machine, source, text),
         lines: lines.peekable(),
         run: None,
         gap: None,
@@ -277,6 +283,12 @@ impl<'t> Reader<'t, '_> {
         let mut rest = code.trim_ascii_start();
         while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
+            // Most words are coordinates, and go no way round through a `Word`.
+            if let Ok((after, (letter, value))) = coordinate(rest) {
+                self.coordinate(letter, value, at..at + (rest.len() - after.len()), block);
+                rest = after.trim_ascii_start();
+                continue;
+            }
             match word(rest) {
                 Ok((after, word)) => {
                     self.word(&word, at..at + (rest.len() - after.len()), block);
@@ -290,16 +302,16 @@ impl<'t> Reader<'t, '_> {
     }
 
     #[inline]
+    fn coordinate(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let Some(axis) = self.assembler.letter(letter) else { return self.axis_unknown(letter, range) };
+        if let Some(units) = self.assembler.units(axis, value, range.clone()) {
+            self.name_axis(block, (axis, letter), units, range);
+        }
+    }
+
     fn word(&mut self, word: &Word<'_>, range: Range<usize>, block: &mut Block) {
         match *word {
-            Word::Coordinate(letter, value) => {
-                let Some(axis) = self.assembler.letter(letter) else {
-                    return self.axis_unknown(letter, range);
-                };
-                if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                    self.name_axis(block, (axis, letter), units, range);
-                }
-            }
+            Word::Coordinate(letter, value) => self.coordinate(letter, value, range, block),
             Word::Step(letter, value) => self.step(letter, value, range, block),
             Word::Turn(value) => self.turn(value, range, block),
             Word::FeedParameter(_) if block.feed.is_some() || block.rapid => {
@@ -375,7 +387,8 @@ impl<'t> Reader<'t, '_> {
             return self.assembler.error("coefficient-range", format!("K{power}{name} is too large"), range);
         };
         // The grammar has K1, K2 and K3 only.
-        let place = &mut block.coefficients[axis][power - 1];
+        let coefficients = block.coefficients.get_or_insert_default();
+        let place = &mut coefficients.values[axis][power - 1];
         if place.is_some() {
             return self.assembler.error(
                 "coefficient-twice",
@@ -384,8 +397,8 @@ impl<'t> Reader<'t, '_> {
             );
         }
         *place = Some(self.assembler.coefficient(axis, value));
-        if block.coefficient_places[axis] == (0, 0) {
-            block.coefficient_places[axis] = (range.start, range.end);
+        if coefficients.places[axis] == (0, 0) {
+            coefficients.places[axis] = (range.start, range.end);
         }
     }
 
@@ -466,11 +479,13 @@ impl<'t> Reader<'t, '_> {
         let mut coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
         let mut apart = Vec::new();
         let mut moved = false;
-        for (axis, k) in block.coefficients.iter().enumerate() {
+        let none = Coefficients::default();
+        let said = block.coefficients.as_deref().unwrap_or(&none);
+        for (axis, k) in said.values.iter().enumerate() {
             let named = block.named().iter().position(|(other, _)| *other == axis);
             let &[Some(k1), Some(k2), Some(k3)] = k else {
                 if named.is_some() || k.iter().any(Option::is_some) {
-                    let (start, end) = named.map_or(block.coefficient_places[axis], |n| block.places[n]);
+                    let (start, end) = named.map_or(said.places[axis], |n| block.places[n]);
                     self.coefficients_missing(axis, k, start..end);
                     return;
                 }
@@ -482,7 +497,7 @@ impl<'t> Reader<'t, '_> {
                 if [k1, k2, k3].iter().all(|k| is_zero_in_text(*k)) {
                     continue;
                 }
-                let (start, end) = block.coefficient_places[axis];
+                let (start, end) = said.places[axis];
                 let name = self.assembler.machine.axes.name(axis);
                 let message = format!("the coefficients move {name}, but the block gives it no end");
                 return self.assembler.error("coordinate-missing", message, start..end);

@@ -45,7 +45,7 @@ pub(super) enum Word<'t> {
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
     alt((
-        coordinate,
+        coordinate.map(|(letter, value)| Word::Coordinate(letter, value)),
         coefficient,
         direction,
         feed,
@@ -105,10 +105,10 @@ fn number(input: &str) -> IResult<&str, Decimal> {
 
 /// `coordinate = axis, number`
 #[inline]
-fn coordinate(input: &str) -> IResult<&str, Word<'_>> {
+pub(super) fn coordinate(input: &str) -> IResult<&str, (u8, Decimal)> {
     let (rest, letter) = axis(input)?;
     let (rest, value) = number(rest)?;
-    Ok((rest, Word::Coordinate(letter, value)))
+    Ok((rest, (letter, value)))
 }
 
 /// `coefficient = "K", ( "3" | "2" | "1" ), axis, number, [ exponent ]`

@@ -23,7 +23,7 @@ use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
 use nurbs::NurbsRun;
 use std::ops::Range;
-use words::{Word, word};
+use words::{Word, address, word};
 
 /// G group 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +122,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
-        assembler: Assembler::new(machine, source),
+        assembler: Assembler::new(machine, source, text),
         motion: Motion::None,
         run: None,
         remarks: Vec::new(),
@@ -224,16 +224,20 @@ impl Reader<'_> {
         }
         while !rest.is_empty() {
             let at = start + (code.len() - rest.len());
+            // Most words are addresses, and go no way round through a `Word`.
+            if let Ok((after, (letter, value))) = address(rest) {
+                words += 1;
+                self.addressed(letter, value, at..at + (rest.len() - after.len()), &mut block);
+                rest = after.trim_ascii_start();
+                continue;
+            }
             let Ok((after, word)) = word(rest) else { return self.unreadable(rest, at) };
             let range = at..at + (rest.len() - after.len());
             match word {
                 Word::Remark(text) => remark = Some(text),
                 Word::Address(letter, value) => {
                     words += 1;
-                    match self.assembler.letter(letter) {
-                        Some(axis) => self.axis(&mut block, axis, value, range),
-                        None => self.address(letter, value, range, &mut block),
-                    }
+                    self.addressed(letter, value, range, &mut block);
                 }
                 Word::FeedParameter(number) => {
                     words += 1;
@@ -265,6 +269,15 @@ impl Reader<'_> {
                 }
             }
             Some(_) | None => self.act(block, line, span),
+        }
+    }
+
+    /// A letter and a number.
+    #[inline]
+    fn addressed(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
+        match self.assembler.letter(letter) {
+            Some(axis) => self.axis(block, axis, value, range),
+            None => self.address(letter, value, range, block),
         }
     }
 

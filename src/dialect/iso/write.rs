@@ -187,7 +187,7 @@ impl Writer<'_> {
 
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         self.modal.lines(points);
-        for (i, point) in points.points().enumerate() {
+        for (i, point) in points.units.chunks_exact(points.stride).enumerate() {
             let rate = points.rates.get(i);
             self.modal.begin("N");
             self.modal.motion("G1");
@@ -197,12 +197,12 @@ impl Writer<'_> {
                 self.modal.text(&format!("G43 H{tool} "));
             }
             self.modal.inverse(rate.is_some());
-            self.modal.moved_axes(&point, points.stride);
+            self.modal.moved_axes(point);
             match rate {
                 Some(rate) => self.modal.rate(*rate),
                 None => self.modal.feed(feed),
             }
-            self.modal.reached(&point);
+            self.modal.reached(point);
             self.modal.end();
         }
         self.modal.lines_end();

@@ -8,7 +8,7 @@ mod path;
 mod spline;
 mod state;
 
-use super::words::{Word, word};
+use super::words::{Word, address, word};
 use super::write::SECOND;
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -46,11 +46,15 @@ enum Motion {
 const STATE_CODES: [&str; 11] =
     ["G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
 
+/// a₂ … a₅ of each axis.
+type Coefficients = [[Decimal; COEFFICIENTS]; MAX_AXES];
+
 /// What one block says.
 struct Block {
     named: [(usize, i64); MAX_AXES],
     count: usize,
-    coefficients: [[Decimal; COEFFICIENTS]; MAX_AXES],
+    /// Those of PO[X] and so on; few blocks have any.
+    coefficients: Option<Box<Coefficients>>,
     has_polynomial: bool,
     /// The axes that PO[…] names.
     divides: [bool; MAX_AXES],
@@ -75,6 +79,15 @@ struct Block {
 impl Block {
     fn named(&self) -> &[(usize, i64)] {
         &self.named[..self.count]
+    }
+
+    fn coefficients(&self) -> &Coefficients {
+        const NONE: Coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
+        self.coefficients.as_deref().unwrap_or(&NONE)
+    }
+
+    fn coefficients_mut(&mut self) -> &mut Coefficients {
+        self.coefficients.get_or_insert_default()
     }
 }
 
@@ -112,7 +125,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);
     let mut reader = Reader {
-        assembler: Assembler::new(machine, source),
+        assembler: Assembler::new(machine, source, text),
         motion: Motion::None,
         degree: 3,
         upath: false,
@@ -163,8 +176,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.assembler.step(Step::Comment(comment.trim().to_owned()), span);
             continue;
         }
-        let code = &body[..memchr::memchr(b';', body.as_bytes()).unwrap_or(body.len())];
-        reader.block(code, start, line.number, span);
+        reader.block(body, start, line.number, span);
         if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
@@ -188,12 +200,12 @@ impl Reader<'_> {
         self.splinepath.clear();
     }
 
-    /// One block: its words, then the move that they make.
+    /// One block: its words up to a remark, then the move that they make.
     fn block(&mut self, code: &str, start: usize, line: u32, span: Span) {
         let mut block = Block {
             named: [(0, 0); MAX_AXES],
             count: 0,
-            coefficients: [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES],
+            coefficients: None,
             has_polynomial: false,
             divides: [false; MAX_AXES],
             denominator: None,
@@ -208,8 +220,14 @@ impl Reader<'_> {
             starts_spline: false,
         };
         let mut rest = code.trim_ascii_start();
-        while !rest.is_empty() {
+        while !rest.is_empty() && !rest.starts_with(';') {
             let at = start + (code.len() - rest.len());
+            // Most words are addresses, and go no way round through a `Word`.
+            if let Ok((after, (name, value))) = address(rest) {
+                self.addressed(name, value, at..at + (rest.len() - after.len()), &mut block);
+                rest = after.trim_ascii_start();
+                continue;
+            }
             match word(rest) {
                 Ok((after, word)) => {
                     let range = at..at + (rest.len() - after.len());
@@ -217,7 +235,7 @@ impl Reader<'_> {
                     rest = after.trim_ascii_start();
                 }
                 Err(_) => {
-                    let length = rest.find([' ', '\t']).unwrap_or(rest.len());
+                    let length = rest.find([' ', '\t', ';']).unwrap_or(rest.len());
                     self.assembler.error("word-unreadable", "this word cannot be read", at..at + length);
                     return;
                 }
@@ -235,21 +253,22 @@ impl Reader<'_> {
         self.moved(&block, line, span);
     }
 
+    /// A name and a number.
+    #[inline]
+    fn addressed(&mut self, name: &str, value: Decimal, range: Range<usize>, block: &mut Block) {
+        let axis = match name.as_bytes() {
+            [letter] => self.assembler.letter(*letter),
+            _ => self.assembler.axis(name),
+        };
+        let Some(axis) = axis else { return self.address(name, value, range, block) };
+        if let Some(units) = self.assembler.units(axis, value, range.clone()) {
+            self.name_axis(block, axis, units, range);
+        }
+    }
+
     fn word(&mut self, word: Word<'_>, range: Range<usize>, block: &mut Block) {
         match word {
-            Word::Address(name, value) => {
-                let axis = match name.as_bytes() {
-                    [letter] => self.assembler.letter(*letter),
-                    _ => self.assembler.axis(name),
-                };
-                if let Some(axis) = axis {
-                    if let Some(units) = self.assembler.units(axis, value, range.clone()) {
-                        self.name_axis(block, axis, units, range);
-                    }
-                } else {
-                    self.address(name, value, range, block);
-                }
-            }
+            Word::Address(name, value) => self.addressed(name, value, range, block),
             Word::FeedParameter(number) => {
                 if let Some(value) = self.assembler.parameter(number, range.clone()) {
                     self.address("F", value, range, block);
@@ -287,7 +306,7 @@ impl Reader<'_> {
                 };
                 if let Some(units) = self.assembler.units(axis, values[0], range.clone()) {
                     self.name_axis(block, axis, units, range);
-                    for (own, a) in block.coefficients[axis].iter_mut().zip(&values[1..]) {
+                    for (own, a) in block.coefficients_mut()[axis].iter_mut().zip(&values[1..]) {
                         *own = self.assembler.coefficient(axis, *a);
                     }
                     block.has_polynomial = true;
@@ -458,7 +477,7 @@ impl Reader<'_> {
                 coefficients,
                 divides: block.divides,
             });
-            let coefficients = block.coefficients;
+            let coefficients = *block.coefficients();
             let start = run.blocks.last().map_or(run.start, |last| last.end);
             let own = PolynomialBlock { pl, end: target, coefficients, denominator, line };
             if let Some((id, message)) = denominator_fault(&self.assembler, &own, &start, block.named()) {

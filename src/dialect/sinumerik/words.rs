@@ -33,6 +33,7 @@ pub(super) enum Word<'t> {
 /// `word = address | polynomial | feed_parameter | shortest | way | assignment | call | keyword`
 #[inline]
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
+    let address = address.map(|(name, value)| Word::Address(name, value));
     alt((address, polynomial, feed_parameter, shortest, way, assignment, call, keyword)).parse(input)
 }
 
@@ -61,7 +62,7 @@ fn way(input: &str) -> IResult<&str, Word<'_>> {
 
 /// `address = ( axis_letter | "F" | "I" | "J" | "K" ), number | code`, or another letter; no `=` follows, since `X1=10` is axis X1
 #[inline]
-fn address(input: &str) -> IResult<&str, Word<'_>> {
+pub(super) fn address(input: &str) -> IResult<&str, (&str, Decimal)> {
     let failed = || Err(nom::Err::Error(Error::new(input, ErrorKind::Alpha)));
     let bytes = input.as_bytes();
     if !bytes.first().is_some_and(u8::is_ascii_alphabetic) {
@@ -71,11 +72,10 @@ fn address(input: &str) -> IResult<&str, Word<'_>> {
     if rest.trim_ascii_start().starts_with('=') {
         return failed();
     }
-    Ok((rest, Word::Address(&input[..1], value)))
+    Ok((rest, (&input[..1], value)))
 }
 
-/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits ), [ exponent ]` with
-/// `exponent = "EX", [ "-" ], digits`
+/// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits ), [ exponent ]`
 #[inline]
 fn number(input: &str) -> IResult<&str, Decimal> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Digit));
@@ -84,11 +84,14 @@ fn number(input: &str) -> IResult<&str, Decimal> {
     if !rest.starts_with("EX") {
         return Ok((rest, value));
     }
-    let (rest, exponent) =
-        preceded(tag("EX"), recognize((opt(char('-')), take_while1(|c: char| c.is_ascii_digit()))))
-            .parse(rest)?;
-    let exponent: i32 = exponent.parse().map_err(|_| failed())?;
+    let (rest, exponent) = exponent(rest)?;
     scaled(value, exponent).map(|value| (rest, value)).ok_or_else(failed)
+}
+
+/// `exponent = "EX", [ "-" ], digits`
+#[cold]
+fn exponent(input: &str) -> IResult<&str, i32> {
+    preceded(tag("EX"), map_res(recognize((opt(char('-')), digit1)), str::parse)).parse(input)
 }
 
 /// value · 10^exponent, where it can be held.
@@ -140,7 +143,7 @@ fn assignment(input: &str) -> IResult<&str, Word<'_>> {
 /// `call = "SPLINEPATH(", { blank }, "1", { comma, axis }, { blank }, ")"
 ///      | "FGROUP(", { blank }, [ linear_axis, { comma, linear_axis }, { blank } ], ")"`, or another name or arguments
 fn call(input: &str) -> IResult<&str, Word<'_>> {
-    let arguments = delimited(char('('), take_while(|c: char| c != ')'), char(')'));
+    let arguments = delimited(char('('), take_while(|c: char| !matches!(c, ')' | ';')), char(')'));
     (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
 }
 

@@ -177,12 +177,12 @@ impl Writer<'_> {
     fn lines(&mut self, points: &WrittenPoints, feed: Option<Decimal>) {
         self.lead(false);
         self.modal.lines(points);
-        for point in points.points() {
+        for point in points.units.chunks_exact(points.stride) {
             self.modal.begin("N");
             self.modal.motion("G1");
-            self.modal.moved_axes(&point, points.stride);
+            self.modal.moved_axes(point);
             self.modal.feed(feed);
-            self.modal.reached(&point);
+            self.modal.reached(point);
             self.modal.end();
         }
         self.modal.lines_end();

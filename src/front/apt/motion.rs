@@ -3,7 +3,6 @@
 use super::arcs::{Circle, Left};
 use super::program::UPRIGHT;
 use super::reader::{Reader, Said};
-use super::records::Record;
 use super::technology::Feed;
 use crate::diagnostic::Diagnostic;
 use crate::geom::direction;
@@ -25,53 +24,51 @@ pub(super) enum Pending {
 
 impl Reader<'_> {
     /// A point in mm, where its coordinates are numbers that a machine may have.
-    fn point(&mut self, numbers: &[f64], span: impl Fn() -> Span) -> Option<[f64; 3]> {
+    fn point(&mut self, numbers: &[f64], span: Span) -> Option<[f64; 3]> {
         let point = [numbers[0] * self.scale, numbers[1] * self.scale, numbers[2] * self.scale];
         if point.iter().all(|x| x.abs() < 1.0e9) {
             return Some(point);
         }
-        self.error("number-range", "a coordinate is beyond any machine", span());
+        self.error("number-range", "a coordinate is beyond any machine", span);
         None
     }
 
     /// `GOTO/x,y,z[,i,j,k]`
     #[inline]
-    pub(super) fn goto(&mut self, numbers: &[f64], record: &Record<'_>) {
-        let source = self.source;
-        let span = || record.span(source);
+    pub(super) fn goto(&mut self, numbers: &[f64], line: u32, span: Span) {
         if numbers.len() == 6 {
-            if !self.set_axis([numbers[3], numbers[4], numbers[5]], span()) {
+            if !self.set_axis([numbers[3], numbers[4], numbers[5]], span) {
                 return;
             }
         } else if self.axis_stale
             && numbers.len() == 3
             && AXIS_SLACK < direction::angle(&self.program.axis(), &UPRIGHT)
         {
-            return self.stale_axis(span());
+            return self.stale_axis(span);
         } else if numbers.len() != 3 {
             let message =
                 format!("a point has three numbers, or six with a tool axis, not {}", numbers.len());
-            return self.error("goto-numbers", message, span());
+            return self.error("goto-numbers", message, span);
         }
         let Some(point) = self.point(numbers, span) else { return };
         if self.cycle.is_some() {
-            return self.hole(point, span());
+            return self.hole(point, span);
         }
-        if self.pending.is_some() && self.met(point, span()) {
+        if self.pending.is_some() && self.met(point, span) {
             return;
         }
         if self.rapid {
             self.rapid = false;
-            return self.program.rapid(&point, span());
+            return self.program.rapid(&point, span);
         }
         let feed = match self.feed {
             Some(Feed::PerMinute(mm)) => mm,
-            feed => match self.per_minute(feed, span()) {
+            feed => match self.per_minute(feed, span) {
                 Some(mm) => mm,
                 None => return,
             },
         };
-        self.program.line(&point, feed, record.line, span());
+        self.program.line(&point, feed, line, span);
     }
 
     /// Meets a point where something waits for one; whether it was the end of an arc.
@@ -161,7 +158,7 @@ impl Reader<'_> {
                 if numbers.len() == 6 && !self.set_axis([numbers[3], numbers[4], numbers[5]], said.span) {
                     return;
                 }
-                let Some(point) = self.point(&numbers, || said.span) else { return };
+                let Some(point) = self.point(&numbers, said.span) else { return };
                 if self.program.has_moved() {
                     let message = "FROM stands behind the first move; the tool is where the moves left it";
                     self.push(Diagnostic::warning("from-late", message).at(said.span, ""));
@@ -186,7 +183,7 @@ impl Reader<'_> {
                 {
                     return;
                 }
-                self.point(numbers, || said.span)
+                self.point(numbers, said.span)
             }
             _ => return self.error("arguments", "GOHOME takes three numbers or none", said.span),
         };
@@ -218,6 +215,6 @@ impl Reader<'_> {
         };
         // `goto` takes units of the file.
         let to: Vec<f64> = (0..3).map(|i| from[i] / self.scale + by[i]).collect();
-        self.goto(&to, said.record);
+        self.goto(&to, said.record.line, said.span);
     }
 }

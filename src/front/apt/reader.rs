@@ -166,16 +166,19 @@ impl<'s> Reader<'s> {
     /// Reads a text.
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
-        for record in Records::new(text) {
+        let mut records = Records::new(text);
+        while self.errors < MAX_ERRORS && !self.hopeless {
+            // Points are by far the most, and most of them come in a row.
+            let plain = goto && self.spline.is_none() && !self.ended;
+            if plain && let Some(goto) = statement::goto(records.rest()) {
+                let (line, start) = records.pass(goto.end);
+                let place = start + goto.place.start..start + goto.place.end;
+                self.goto(goto.numbers(), line, Span::new(self.source, place));
+                continue;
+            }
+            let Some(record) = &records.next() else { break };
             match record.kind {
-                Kind::Code => {
-                    // Points are by far the most, and most of them come in a row.
-                    let plain = goto && self.spline.is_none() && !self.ended;
-                    match statement::goto(&record.text).filter(|_| plain) {
-                        Some((numbers, count)) => self.goto(&numbers[..count], &record),
-                        None => self.code(&record),
-                    }
-                }
+                Kind::Code => self.code(record),
                 Kind::Remark => self.remark(&record.text, record.span(self.source)),
                 Kind::TooLong => {
                     let message = format!("a statement of more than {MAX_RECORD} characters is no CL data");
@@ -183,9 +186,6 @@ impl<'s> Reader<'s> {
                     let span = Span::new(self.source, start..start + 1);
                     self.push(Diagnostic::error("statement-too-long", message).at(span, "it begins here"));
                 }
-            }
-            if MAX_ERRORS <= self.errors || self.hopeless {
-                break;
             }
         }
         self.end(text)
@@ -428,7 +428,7 @@ impl<'s> Reader<'s> {
             Meaning::Gohome => self.gohome(said),
             Meaning::Godlta => self.godlta(said),
             Meaning::Goto => match said.statement.numbers() {
-                Some(numbers) => self.goto(&numbers, said.record),
+                Some(numbers) => self.goto(&numbers, said.record.line, said.span),
                 None => self.error("arguments", format!("{word} takes numbers only"), said.span),
             },
             Meaning::Circle => self.circle(said),

@@ -43,7 +43,15 @@ pub(super) struct Record<'t> {
     joints: Vec<(usize, usize)>,
 }
 
-impl Record<'_> {
+impl<'t> Record<'t> {
+    /// A record that is a part of the text, which starts there.
+    #[inline]
+    fn borrowed(kind: Kind, line: u32, (start, text): (usize, &'t str)) -> Record<'t> {
+        let range = start..start + text.len();
+        let (kind, text) = if MAX_RECORD < text.len() { (Kind::TooLong, "") } else { (kind, text) };
+        Record { kind, line, range, text: Cow::Borrowed(text), joints: Vec::new() }
+    }
+
     /// Where bytes `range` of the record's text stand in the source.
     pub(super) fn place(&self, source: SourceId, range: Range<usize>) -> Span {
         let end = range.end.max(range.start);
@@ -106,17 +114,30 @@ impl<'t> Records<'t> {
         self.line = self.line.saturating_add(1);
     }
 
-    /// A record of one line or a part of it.
-    fn borrowed(&self, kind: Kind, start: usize, end: usize) -> Option<Record<'t>> {
+    /// What stands between the blanks of one line or a part of it, and where it starts.
+    fn trimmed(&self, start: usize, end: usize) -> Option<(usize, &'t str)> {
         let text = self.text[start..end].trim_ascii_start();
         let trimmed = text.trim_ascii_end();
-        if trimmed.is_empty() {
-            return None;
-        }
-        let start = end - text.len();
-        let range = start..start + trimmed.len();
-        let (kind, text) = if MAX_RECORD < trimmed.len() { (Kind::TooLong, "") } else { (kind, trimmed) };
-        Some(Record { kind, line: self.line, range, text: Cow::Borrowed(text), joints: Vec::new() })
+        (!trimmed.is_empty()).then_some((end - text.len(), trimmed))
+    }
+
+    /// What is left of the text; nothing while a remark waits.
+    #[inline]
+    pub(super) fn rest(&self) -> &'t str {
+        if self.remark.is_some() { "" } else { self.text.get(self.at..).unwrap_or_default() }
+    }
+
+    /// Passes over the first line of that, which ends there; gives its number and where it starts.
+    #[inline]
+    pub(super) fn pass(&mut self, end: usize) -> (u32, usize) {
+        let (line, start) = (self.line, self.at);
+        self.next_line(start + end + 1);
+        (line, start)
+    }
+
+    /// A record of one line or a part of it.
+    fn borrowed(&self, kind: Kind, start: usize, end: usize) -> Option<Record<'t>> {
+        self.trimmed(start, end).map(|trimmed| Record::borrowed(kind, self.line, trimmed))
     }
 
     /// A record that has a `$` in its first line, at `dollar`.
@@ -209,15 +230,17 @@ impl<'t> Iterator for Records<'t> {
             let start = self.at;
             let found = memchr::memchr2(b'\n', b'$', &self.text.as_bytes()[start..]);
             let end = found.map_or(self.text.len(), |length| start + length);
-            let record = if self.text.as_bytes().get(end) == Some(&b'$') {
-                self.with_dollar(end)
-            } else {
-                let record = self.borrowed(Kind::Code, start, end);
-                self.next_line(end + 1);
-                record
-            };
-            if record.is_some() {
-                return record;
+            if self.text.as_bytes().get(end) == Some(&b'$') {
+                let record = self.with_dollar(end);
+                if record.is_some() {
+                    return record;
+                }
+                continue;
+            }
+            let line = self.line;
+            self.next_line(end + 1);
+            if let Some(trimmed) = self.trimmed(start, end) {
+                return Some(Record::borrowed(Kind::Code, line, trimmed));
             }
         }
         None

@@ -9,6 +9,7 @@
 //!
 //! Blanks may stand anywhere but in numbers. A number may have the exponents E and D.
 
+use super::records::MAX_RECORD;
 use crate::decimal::{self, MOST_EXACT};
 use nom::IResult;
 use nom::bytes::complete::take_while;
@@ -112,27 +113,54 @@ pub(super) fn parse(text: &str) -> Result<Statement<'_>, Unreadable> {
     }
 }
 
-/// The numbers of a `GOTO`, the statement of which there are millions, and how many they are; none where it is not
-/// `GOTO/` and one to six numbers.
+/// A line that is `GOTO/` and one to six numbers, the statement of which there are millions.
+pub(super) struct Goto {
+    numbers: [f64; 6],
+    count: usize,
+    /// Where it stands in the text, without the blanks round it.
+    pub(super) place: Range<usize>,
+    /// Where its line ends.
+    pub(super) end: usize,
+}
+
+impl Goto {
+    /// The numbers.
+    pub(super) fn numbers(&self) -> &[f64] {
+        &self.numbers[..self.count]
+    }
+}
+
+/// The first line of a text, where it is `GOTO/` and numbers.
 #[inline]
-pub(super) fn goto(text: &str) -> Option<([f64; 6], usize)> {
-    let start = text.as_bytes().get(..4)?;
-    if !start.eq_ignore_ascii_case(b"GOTO") {
+pub(super) fn goto(text: &str) -> Option<Goto> {
+    let statement = past_blanks(text);
+    if !statement.as_bytes().get(..4)?.eq_ignore_ascii_case(b"GOTO") {
         return None;
     }
-    let mut rest = text[4..].trim_ascii_start().strip_prefix('/')?;
-    let mut numbers = [0.0; 6];
-    let mut count = 0;
+    let mut rest = past_blanks(&statement[4..]).strip_prefix('/')?;
+    let (mut numbers, mut count) = ([0.0; 6], 0);
     loop {
-        let (after, value) = number(rest.trim_ascii_start()).ok()?;
+        let (after, value) = number(past_blanks(rest)).ok()?;
         *numbers.get_mut(count)? = value;
         count += 1;
-        rest = after.trim_ascii_start();
-        if rest.is_empty() {
-            return Some((numbers, count));
+        rest = past_blanks(after);
+        match rest.as_bytes().first() {
+            Some(b',') => rest = &rest[1..],
+            None | Some(b'\n') => {
+                let place = text.len() - statement.len()..text.len() - after.len();
+                let fits = place.len() <= MAX_RECORD;
+                return fits.then(|| Goto { numbers, count, place, end: text.len() - rest.len() });
+            }
+            Some(_) => return None,
         }
-        rest = rest.strip_prefix(',')?;
     }
+}
+
+/// What stands behind the blanks at the start of a text, in the same line.
+#[inline]
+fn past_blanks(text: &str) -> &str {
+    let is_blank = |byte: &u8| *byte != b'\n' && byte.is_ascii_whitespace();
+    &text[text.bytes().take_while(is_blank).count()..]
 }
 
 fn fail<T>(at: &str) -> IResult<&str, T> {
@@ -154,6 +182,13 @@ pub(super) fn number(input: &str) -> IResult<&str, f64> {
         let value = decimal::units_to_f64(scanned.mantissa as i64, scanned.fraction as u8);
         return Ok((&input[scanned.length..], if scanned.negative { -value } else { value }));
     }
+    long_number(input)
+}
+
+/// A number of more digits than a float holds, or with an exponent.
+#[cold]
+fn long_number(input: &str) -> IResult<&str, f64> {
+    let bytes = input.as_bytes();
     let Ok((value, length)) = fast_float2::parse_partial::<f64, _>(bytes) else { return fail(input) };
     if matches!(bytes.get(length), Some(b'D' | b'd')) {
         return number_d(input, length);
@@ -423,12 +458,33 @@ mod tests {
 
     #[test]
     fn a_goto_is_read_at_once() {
-        assert_eq!(goto("GOTO  /   17.0,    0.0, -2.5"), Some(([17.0, 0.0, -2.5, 0.0, 0.0, 0.0], 3)));
-        assert_eq!(goto("goto/1,2,3,0,0,1").unwrap().1, 6);
-        for text in
-            ["GOTO/1,2,3,4,5,6,7", "GOTO", "GOTO/", "GOTO/1,,2", "GOHOME/1", "GOTO/1;", "GOTO/nan", "Ä"]
-        {
-            assert_eq!(goto(text), None, "{text}");
+        for (text, numbers, place, end) in [
+            ("GOTO  /   17.0,    0.0, -2.5", &[17.0, 0.0, -2.5][..], 0..28, 28),
+            (" \tgoto/1,2,3,0,0,1 \r\nGOTO/4", &[1.0, 2.0, 3.0, 0.0, 0.0, 1.0], 2..18, 20),
+            ("GOTO/1E1\n\n", &[10.0], 0..8, 8),
+        ] {
+            let read = goto(text).unwrap();
+            assert_eq!((read.numbers(), &read.place, read.end), (numbers, &place, end), "{text}");
+            // As the way that all statements go.
+            assert_eq!(parse(&text[place]).unwrap().numbers().unwrap(), numbers, "{text}");
+        }
+        let long = format!("GOTO/1,{}2,3", " ".repeat(MAX_RECORD));
+        for text in [
+            "GOTO/1,2,3,4,5,6,7",
+            "GOTO",
+            "GOTO/",
+            "GOTO/1,,2",
+            "GOTO/1,\n2",
+            "GOTO/1,2,3 $$ R",
+            "GOTO/1,$",
+            "\nGOTO/1",
+            "GOHOME/1",
+            "GOTO/1;",
+            "GOTO/nan",
+            "Ä",
+            &long,
+        ] {
+            assert!(goto(text).is_none(), "{text}");
         }
     }
 }

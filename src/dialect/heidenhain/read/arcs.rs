@@ -133,6 +133,9 @@ impl Reader<'_, '_> {
     /// start elsewhere: a whole circle whose end is not quite its start is next to nothing on the control.
     pub(super) fn is_exact(&mut self, block: &Block, arc: bool, head: Range<usize>) -> bool {
         let before = self.loose;
+        if before == [false; 2] {
+            return true;
+        }
         for (axis, _) in block.named() {
             if let Some(loose) = self.loose.get_mut(*axis) {
                 *loose = false;

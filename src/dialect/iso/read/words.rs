@@ -25,6 +25,7 @@ pub(super) enum Word<'t> {
 
 /// `word = address | remark | feed_parameter | assignment`
 pub(super) fn word(input: &str) -> IResult<&str, Word<'_>> {
+    let address = address.map(|(letter, value)| Word::Address(letter, value));
     alt((address, remark, feed_parameter, assignment)).parse(input)
 }
 
@@ -36,14 +37,14 @@ fn feed_parameter(input: &str) -> IResult<&str, Word<'_>> {
 /// `address = ( axis_letter | "F" | "I" | "J" | "K" | "P" | "R" ), number | "O", { "0" }, digit - "0", { digit } | code`, or another
 /// letter; no `=` follows, since `X1=10.` is axis X1
 #[inline]
-fn address(input: &str) -> IResult<&str, Word<'_>> {
+pub(super) fn address(input: &str) -> IResult<&str, (u8, Decimal)> {
     let failed = || nom::Err::Error(Error::new(input, ErrorKind::Alpha));
     let letter = input.bytes().next().filter(u8::is_ascii_uppercase).ok_or_else(failed)?;
     let (rest, value) = number(&input[1..])?;
     if rest.trim_ascii_start().starts_with('=') {
         return Err(failed());
     }
-    Ok((rest, Word::Address(letter, value)))
+    Ok((rest, (letter, value)))
 }
 
 /// `number = [ sign ], ( digits, [ ".", [ digits ] ] | ".", digits )`

@@ -94,9 +94,9 @@ impl Reader<'_> {
             let tip = self.assembler.counted(i, named.or(self.assembler.position[i])?)?;
             components[i] = Some(end.minus(tip)?);
             for k in 0..COEFFICIENTS {
-                let own = self.assembler.coefficient(i, block.coefficients[i][k]);
+                let own = self.assembler.coefficient(i, block.coefficients()[i][k]);
                 let along = coefficients[k].minus(own)?;
-                block.coefficients[first + i][k] = self.assembler.coefficient(first + i, along);
+                block.coefficients_mut()[first + i][k] = self.assembler.coefficient(first + i, along);
             }
         }
         Some(components)
