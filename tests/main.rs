@@ -17,6 +17,7 @@
 //! | `fits` | few cubics, against the best there are |
 //! | `lines` | runs of lines as splines |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
+//! | `misfit` | arcs whose end is not on their circle |
 //! | `plot` | pages and sheets, and what they show |
 //! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
@@ -36,6 +37,7 @@ mod golden;
 mod grammar;
 mod lines;
 mod machine;
+mod misfit;
 mod oracle;
 mod paper;
 mod plot;

@@ -308,9 +308,7 @@ impl<'t> Staged<'t> {
         let undo = match old {
             _ if alone => Undo::Nothing,
             None => Undo::Remove(target.clone()),
-            Some(_) => {
-                fs::read(&target).map_or(Undo::Nothing, |bytes| Undo::Restore(target.clone(), bytes))
-            }
+            Some(_) => fs::read(&target).map_or(Undo::Nothing, |bytes| Undo::Restore(target.clone(), bytes)),
         };
         Ok(Staged::Beside { target, file, undo })
     }

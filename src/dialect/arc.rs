@@ -203,14 +203,12 @@ pub fn add(assembler: &mut Assembler<'_>, arc: WrittenArc, end: &Units, span: Sp
                 let message = format!(
                     "this arc ends beside its circle: the radii to its start and to its end differ by {misfit:.4} mm"
                 );
-                assembler.diagnostics.push(
-                    Diagnostic::error("arc-misfit", message)
-                        .at(span, "")
-                        .hint(format!("up to {refused} mm is read; a control stops here, or runs a circle of its own choice")),
-                );
-                return;
-            }
-            if circle.rounding(&common) < misfit {
+                assembler.diagnostics.push(Diagnostic::error("arc-misfit", message).at(span, "").hint(
+                    format!(
+                        "up to {refused} mm is read; a control stops here, or runs a circle of its own choice"
+                    ),
+                ));
+            } else if circle.rounding(&common) < misfit {
                 assembler.misfits(misfit, span);
             }
         }

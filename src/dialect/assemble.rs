@@ -386,7 +386,8 @@ impl<'m> Assembler<'m> {
             let message = format!(
                 "{arcs} beside its circle by more than rounding: radii to start and end differ by up to {worst:.4} mm"
             );
-            let message = if count == 1 { message } else { message.replacen("its circle", "their circles", 1) };
+            let message =
+                if count == 1 { message } else { message.replacen("its circle", "their circles", 1) };
             self.diagnostics.push(
                 Diagnostic::warning("arc-misfit", message)
                     .at(span, "the worst")

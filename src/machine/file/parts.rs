@@ -360,7 +360,12 @@ impl Reader {
         }
         let lists = [
             ("tool-length", "tool", &frame.tool, "put D1 behind the line that changes the tool"),
-            ("tool-length", "tool_spindle", &frame.tool_spindle, "put D1 behind the line that changes the tool"),
+            (
+                "tool-length",
+                "tool_spindle",
+                &frame.tool_spindle,
+                "put D1 behind the line that changes the tool",
+            ),
             ("plane-length", "plane", &frame.plane, "put D1 before the line that tilts the plane"),
         ];
         for (id, key, lines, hint) in lists {
