@@ -336,8 +336,7 @@ fn a_map_is_written_over_nothing() {
     use std::os::unix::fs::symlink;
     let dir = tempfile::tempdir().expect("a folder");
     let at = dir.path();
-    let input = fs::read_to_string(folder("fixtures/apt/catia-arcs/input.aptsource")).expect("CL data");
-    fs::write(at.join("part.apt"), &input).expect("written");
+    fs::copy(folder("fixtures/apt/catia-arcs/input.aptsource"), at.join("part.apt")).expect("copied");
     fs::write(at.join("mine.toml"), "extends = \"sinumerik\"\n").expect("written");
     fs::write(at.join("words.toml"), "[words]\n").expect("written");
     fs::write(at.join("old.mpf"), "old").expect("written");

@@ -96,7 +96,7 @@ fn the_block_of_the_input_is_blamed_when_it_is_translated() {
 fn what_is_written_is_never_refused() {
     let from = machine("extends = \"sinumerik\"\nname = \"from\"\n");
     let header: Vec<String> =
-        ["; A", "G17 G40 G71 G90 G94", "MCALL", "TRAFOOF", "TRANS", "G54 G64 COMPOF", "FGROUP(X,Y,Z)"]
+        ["; AB", "G17 G40 G71 G90 G94", "MCALL", "TRAFOOF", "TRANS", "G54 G64 COMPOF", "FGROUP(X,Y,Z)"]
             .map(str::to_owned)
             .to_vec();
     let mut lines = header;
