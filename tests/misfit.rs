@@ -57,7 +57,7 @@ fn many_of_them_are_one_warning_about_the_worst() {
     // More than a reader tells of before it gives up.
     for i in 0..200 {
         let y = if i == 77 { "10.005" } else { "10.004" };
-        text.push_str(&format!("G1 X15. Y5.\nG2 X20. Y{y} I5. J0.\n"));
+        text = text + &format!("G1 X15. Y5.\nG2 X20. Y{y} I5. J0.\n");
     }
     let machine = Machine::built_in("mazak").expect("a machine");
     let read = (machine.dialect.read)(&text, SourceId::INPUT, &machine).expect("it is read");

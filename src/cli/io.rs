@@ -212,7 +212,7 @@ pub(crate) fn write_files(files: &[(&str, &str)]) -> Result<(), Diagnostics> {
             Staged::Beside { target, file, undo } => file
                 .persist(&target)
                 .map(|_| done.push(undo))
-                .map_err(|error| plain(error.error))
+                .map_err(|error| io::Error::from(error.error.kind()))
                 .context("the new file cannot take its place")
                 .map_err(|error| said(path, error)),
             Staged::Device(target, text) => {
@@ -239,11 +239,6 @@ fn followed(path: &Path) -> anyhow::Result<PathBuf> {
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
     anyhow::bail!("it is a link that leads nowhere")
-}
-
-/// Of an error the kind alone: its text may name the file beside the target.
-fn plain(error: io::Error) -> io::Error {
-    io::Error::from(error.kind())
 }
 
 /// A text that waits beside its target; that of a device or of standard output waits here.
@@ -285,6 +280,8 @@ impl<'t> Staged<'t> {
         if old.is_some() {
             fs::OpenOptions::new().write(true).open(&target)?;
         }
+        // Of an error the kind alone: its text may name the file beside the target.
+        let plain = |error: io::Error| io::Error::from(error.kind());
         let folder = folder_of(&target);
         anyhow::ensure!(folder.is_dir(), "there is no folder {}", folder.display());
         let beside = || format!("no new file can stand in {}", folder.display());
