@@ -98,6 +98,8 @@ pub struct Output {
     pub intent: Intent,
     /// The tolerance that held, mm.
     pub tolerance: f64,
+    /// The machine as the program wants it, with the axes that it names: what reads the text.
+    pub machine: Machine,
     /// What to know at the machine.
     pub setup: Setup,
     /// What to know.
@@ -220,7 +222,7 @@ fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Resul
                     }
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
                 }
-                return Ok(Output { text, report, motion, intent, tolerance, setup, warnings });
+                return Ok(Output { text, report, motion, intent, tolerance, machine, setup, warnings });
             }
             Err(error) => {
                 let refine = error
@@ -337,6 +339,8 @@ pub struct Verified {
     pub intent: Intent,
     /// The tolerance that held, mm.
     pub tolerance: f64,
+    /// The machine as the program wants it, with the axes that it names.
+    pub machine: Machine,
     /// What to know.
     pub warnings: Diagnostics,
 }
@@ -378,7 +382,7 @@ pub fn verify_program(
     warnings.extend(reading.warnings);
     warnings.extend(pass::stretch::varying(&intent, &machine));
     warnings.extend(steps_exceed_tolerance(&intent, &report, tolerance));
-    Ok(Verified { report, intent, tolerance, warnings })
+    Ok(Verified { report, intent, tolerance, machine, warnings })
 }
 
 /// The form that a program's paths have: that of its first curve, or lines.
@@ -442,10 +446,14 @@ fn resolution(intent: &Intent, machine: &Machine) -> f64 {
     0.5 * decimal::unit_at_surface(&machine.axes, &machine.axis_digits(), intent.radius())
 }
 
+/// The greatest tolerance, mm. A program may be off by a tolerance wherever it cuts; farther off no cut is the one that was
+/// asked, and a figure like 1000 is a slip of its unit.
+pub const MOST_TOLERANCE: f64 = 1.0;
+
 /// The tolerance that holds: the command line's, the input's, the machine's.
 ///
 /// # Errors
-/// It is not positive, or below what the machine's decimals can carry.
+/// It is not positive, above [`MOST_TOLERANCE`], or below what the machine's decimals can carry.
 fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f64, Diagnostics> {
     let tolerance =
         options.tolerance.or(intent.tolerance.map(|(tolerance, _)| tolerance)).unwrap_or(machine.tolerance);
@@ -458,6 +466,10 @@ fn tolerance(intent: &Intent, machine: &Machine, options: &Options) -> Result<f6
         return Err(
             at(Diagnostic::error("tolerance-range", "the tolerance must be greater than zero")).into()
         );
+    }
+    if MOST_TOLERANCE < tolerance {
+        let message = format!("the tolerance of {tolerance} mm is above {MOST_TOLERANCE} mm");
+        return Err(at(Diagnostic::error("tolerance-range", message)).into());
     }
     let least = resolution(intent, machine);
     if tolerance < least {

@@ -328,3 +328,81 @@ fn a_program_for_one_machine_becomes_one_for_another() {
         assert_eq!(code(&output), 2, "{wrong:?}: {}", stderr(&output));
     }
 }
+
+/// Program and map are two files of their own, or nothing is written.
+#[cfg(unix)]
+#[test]
+fn a_map_is_written_over_nothing() {
+    use std::os::unix::fs::symlink;
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path();
+    fs::copy(folder("fixtures/apt/catia-arcs/input.aptsource"), at.join("part.apt")).expect("copied");
+    fs::write(at.join("mine.toml"), "extends = \"sinumerik\"\n").expect("written");
+    fs::write(at.join("words.toml"), "[words]\n").expect("written");
+    fs::write(at.join("old.mpf"), "old").expect("written");
+    fs::create_dir(at.join("sub")).expect("made");
+    for (target, link) in [("part.apt", "link.apt"), ("old.mpf", "link.mpf"), ("new.mpf", "new.link")] {
+        symlink(target, at.join(link)).expect("a link");
+    }
+    let before: Vec<_> = files(at);
+    let cases: &[(&str, &str, &str)] = &[
+        ("old.mpf", "part.apt", "output-is-input"),
+        ("old.mpf", "./part.apt", "output-is-input"),
+        ("old.mpf", "sub/../part.apt", "output-is-input"),
+        ("old.mpf", "link.apt", "output-is-input"),
+        ("old.mpf", "mine.toml", "output-is-input"),
+        ("old.mpf", "words.toml", "output-is-input"),
+        ("words.toml", "map.json", "output-is-input"),
+        ("old.mpf", "old.mpf", "outputs-are-one"),
+        ("old.mpf", "link.mpf", "outputs-are-one"),
+        ("new.mpf", "./new.mpf", "outputs-are-one"),
+        ("new.mpf", "sub/../new.mpf", "outputs-are-one"),
+        ("new.mpf", "new.link", "outputs-are-one"),
+        ("-", "-", "outputs-are-one"),
+        ("old.mpf", "none/map.json", "output-failed"),
+        ("new.mpf", "none/map.json", "output-failed"),
+        ("new.mpf", "", "output-failed"),
+        ("none/new.mpf", "map.json", "output-failed"),
+        ("new.mpf", "sub", "file-is-directory"),
+    ];
+    for (output, map, id) in cases {
+        let arguments =
+            ["compile", "part.apt", "--to", "mine.toml", "--words", "words.toml", "-o", output, "--map", map];
+        let ran = splinepost(&arguments, at);
+        assert_eq!(code(&ran), 2, "{output} {map}: {}", stderr(&ran));
+        assert!(stderr(&ran).contains(id), "{output} {map}: {}", stderr(&ran));
+        assert!(ran.stdout.is_empty(), "{output} {map}");
+        assert_eq!(files(at), before, "{output} {map}");
+    }
+    // Either may be standard output.
+    let ran = splinepost(&["compile", "part.apt", "--to", "mine.toml", "-o", "a.mpf", "--map", "-"], at);
+    assert_eq!(code(&ran), 0, "{}", stderr(&ran));
+    assert!(serde_json::from_slice::<serde_json::Value>(&ran.stdout).is_ok() && at.join("a.mpf").exists());
+    let ran = splinepost(&["compile", "part.apt", "--to", "mine.toml", "--map", "old.mpf"], at);
+    assert_eq!(code(&ran), 0, "{}", stderr(&ran));
+    assert!(ran.stdout.starts_with(b"; ") && fs::read(at.join("old.mpf")).expect("it")[0] == b'{');
+}
+
+/// The names of the files in a folder, and what they hold.
+#[cfg(unix)]
+fn files(at: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries = fs::read_dir(at).expect("a folder").flatten();
+    let mut all: Vec<_> = entries
+        .map(|entry| {
+            let bytes = fs::read(entry.path()).unwrap_or_default();
+            (entry.file_name().to_string_lossy().into_owned(), bytes)
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn a_tolerance_of_metres_is_a_slip() {
+    let dir = tempfile::tempdir().expect("a folder");
+    for (tolerance, expected) in [("1", 0), ("1.001", 2), ("1e9", 2), ("inf", 2)] {
+        let ran =
+            splinepost(&["compile", &mill(), "--to", "sinumerik", "--tolerance", tolerance], dir.path());
+        assert_eq!(code(&ran), expected, "{tolerance}: {}", stderr(&ran));
+    }
+}

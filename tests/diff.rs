@@ -157,7 +157,7 @@ fn damaged(line: &str) -> Vec<String> {
 
 #[test]
 fn every_changed_number_of_a_motion_is_found_in_its_line() {
-    let mut count = 0;
+    let (mut count, mut refused) = (0, 0);
     let mut programs = written(MIXED).to_vec();
     let (_, contour) = golden().into_iter().find(|(name, _)| name == "nx-contour").expect("the contour");
     programs.extend(contour);
@@ -175,8 +175,14 @@ fn every_changed_number_of_a_motion_is_found_in_its_line() {
                 let mut lines_of = all.clone();
                 lines_of[i] = &changed;
                 let other = lines_of.join("\n") + "\n";
-                // What a control would not take is another matter.
-                let Ok(found) = within(&text, &other, None) else { continue };
+                let found = match within(&text, &other, None) {
+                    Ok(found) => found,
+                    // What a control would not take is another matter, an arc beside its circle first of all.
+                    Err(errors) => {
+                        refused += usize::from(errors.0.iter().any(|d| d.id == "arc-misfit"));
+                        continue;
+                    }
+                };
                 assert!(!found.figures.same, "{line}\n{changed}");
                 assert_eq!(found.differences.worst(), Severity::Refusal);
                 let [first, second] = lines(&found, &other, &text);
@@ -194,8 +200,8 @@ fn every_changed_number_of_a_motion_is_found_in_its_line() {
             }
         }
     }
-    println!("{count} numbers");
-    assert!(200 < count, "{count}");
+    println!("{count} numbers, {refused} refused");
+    assert!(150 < count && 200 < count + refused, "{count} {refused}");
 }
 
 #[test]

@@ -19,6 +19,7 @@
 //! | `runs` | runs of every kind: a fit is proved, or lines stay |
 //! | `feeds` | two programs beside each other: every changed F, and planes by their angle |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
+//! | `misfit` | arcs whose end is not on their circle |
 //! | `plot` | pages and sheets, and what they show |
 //! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
@@ -39,6 +40,7 @@ mod golden;
 mod grammar;
 mod lines;
 mod machine;
+mod misfit;
 mod oracle;
 mod paper;
 mod plot;

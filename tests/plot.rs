@@ -153,6 +153,41 @@ fn tilted_planes_are_drawn_in_the_work() {
     }
 }
 
+/// What compiles for a dialect is drawn for it, five axes too.
+#[test]
+fn every_fixture_is_drawn_for_every_dialect() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let picture = dir.path().join("a.svg");
+    let mut inputs = Vec::new();
+    for group in ["fixtures/apt", "fixtures/compile"] {
+        for case in std::fs::read_dir(folder(group)).expect("fixtures").flatten() {
+            let files = std::fs::read_dir(case.path()).expect("a case").flatten().map(|file| file.path());
+            let is_input = |path: &PathBuf| {
+                path.file_stem().is_some_and(|stem| stem == "input")
+                    && path.extension().is_some_and(|extension| extension != "stderr")
+            };
+            inputs.extend(files.filter(is_input));
+        }
+    }
+    inputs.sort();
+    let mut count = 0;
+    for input in &inputs {
+        let input = input.display().to_string();
+        for machine in ["sinumerik", "heidenhain", "mazak"] {
+            let compiled = Command::new(env!("CARGO_BIN_EXE_splinepost"))
+                .args(["compile", &input, "--to", machine])
+                .output()
+                .expect("it runs");
+            let ran = plot(&[&input, "--to", machine, "--cycle", "20ms"], &picture);
+            let told = String::from_utf8_lossy(&ran.stderr).into_owned();
+            assert_eq!(ran.status.code(), compiled.status.code(), "{input} {machine}: {told}");
+            count += usize::from(ran.status.success());
+        }
+    }
+    // Nine of ten go to every machine.
+    assert!(27 * inputs.len() < 10 * count && 40 < count, "{count} of {}", 3 * inputs.len());
+}
+
 #[test]
 fn what_cannot_be_drawn_is_told() {
     let dir = tempfile::tempdir().expect("a folder");

@@ -142,3 +142,18 @@ fn a_machine_that_turns_the_tool_otherwise_is_warned_of() {
     };
     assert!(warned(&even) && !warned(&built_in("heidenhain")));
 }
+
+#[test]
+fn a_program_without_a_number_gets_one_where_one_is_wanted() {
+    let mazak = built_in("mazak");
+    for name in ["sinumerik", "heidenhain", "mazak"] {
+        let from = built_in(name);
+        let start = first(SPLINE, "job", &from, None);
+        let output = program(&start.text, &from, &mazak, None).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        assert_eq!(output.text.lines().nth(1), Some("O0001"), "{name}");
+    }
+    // Its own stays.
+    let start = first(&SPLINE.replacen("name", "number = 4711\nname", 1), "job", &mazak, None);
+    let output = program(&start.text, &mazak, &mazak, None).unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(output.text.lines().nth(1), Some("O4711"));
+}

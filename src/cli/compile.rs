@@ -32,7 +32,7 @@ pub(crate) struct Compile {
     /// The input's language, where it cannot be told from its text; or the machine that it is an NC program for
     #[arg(long, value_name = "LANGUAGE|MACHINE")]
     from: Option<String>,
-    /// Write to this file which lines of the input each block came from (JSON)
+    /// Write to this file, or standard output (-), which lines of the input each block came from (JSON)
     #[arg(long, value_name = "FILE", conflicts_with = "no_verify")]
     map: Option<String>,
     #[command(flatten)]
@@ -59,12 +59,7 @@ impl Compile {
             Some(_) => None,
             None => Some(language(self.from.as_deref(), sources)?),
         };
-        if let Some(output) = &self.output
-            && (io::is_read(output, sources) || io::same_file(output, &self.to))
-        {
-            let message = format!("{output} is what is read; it is not written over");
-            return Err(Diagnostic::error("output-is-input", message).into());
-        }
+        self.outputs_are_free(sources)?;
         let options = Options {
             motion: motion(self.motion.as_deref(), &machine)?,
             method: self.method.map(Into::into),
@@ -87,16 +82,15 @@ impl Compile {
             sources.program = failure.program;
             failure.diagnostics
         })?;
-        match &self.output {
-            Some(path) if path != "-" => io::write_file(path, &output.text)?,
-            Some(_) | None => io::print(&output.text)?,
-        }
+        let machine = output.machine;
+        let mut files = vec![(self.output.as_deref().unwrap_or("-"), output.text.as_str())];
+        let map;
         if let (Some(path), Some(report)) = (&self.map, &output.report) {
-            let machine = machine.with_axes(&output.intent.program.axes)?;
             let reading = (machine.dialect.read)(&output.text, SourceId::PROGRAM, &machine)?.value;
-            let map = splinepost::map::json(&output.intent, report, &reading, &output.text, sources);
-            io::write_file(path, &map)?;
+            map = splinepost::map::json(&output.intent, report, &reading, &output.text, sources);
+            files.push((path, &map));
         }
+        io::write_files(&files)?;
         console.diagnostics(&output.warnings, sources);
         console.summary(&Summary::new(
             &output.intent,
@@ -112,6 +106,28 @@ impl Compile {
 }
 
 impl Compile {
+    /// Whether both outputs are files of their own.
+    fn outputs_are_free(&self, sources: &Sources) -> Result<(), Diagnostics> {
+        let output = self.output.as_deref();
+        for path in output.into_iter().chain(self.map.as_deref()) {
+            if io::is_read(path, sources) || io::same_file(path, &self.to) {
+                let message = format!("{path} is what is read; it is not written over");
+                return Err(Diagnostic::error("output-is-input", message).into());
+            }
+        }
+        let output = output.unwrap_or("-");
+        match self.map.as_deref() {
+            Some(map) if map == output || io::same_file(map, output) => {
+                let message = match output {
+                    "-" => "program and map would both go to standard output".to_owned(),
+                    _ => format!("{map} cannot hold both the program and its map"),
+                };
+                Err(Diagnostic::error("outputs-are-one", message).into())
+            }
+            Some(_) | None => Ok(()),
+        }
+    }
+
     /// The machine that the input is an NC program for, where `--from` names one.
     fn machine_of_input(&self, sources: &mut Sources) -> Result<Option<Machine>, Diagnostics> {
         match &self.from {

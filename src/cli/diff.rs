@@ -2,7 +2,7 @@
 
 use super::compile::{Reading, is_machine, language};
 use super::io::{self, Console};
-use super::{machine, tolerance};
+use super::{length, machine, tolerance};
 use splinepost::diagnostic::Diagnostics;
 use splinepost::diff::{self, Options, Origin};
 use splinepost::front;
@@ -35,7 +35,7 @@ pub(crate) struct Diff {
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
     /// The radius at which rotary axes count; without it a degree counts as a millimetre
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = length)]
     radius: Option<f64>,
     #[command(flatten)]
     reading: Reading,

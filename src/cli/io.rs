@@ -150,11 +150,24 @@ pub(crate) fn print(text: &str) -> Result<(), Diagnostics> {
     }
 }
 
-/// Whether two paths are one file.
+/// Whether two paths are one file, whether it is there already or not.
 pub(crate) fn same_file(a: &str, b: &str) -> bool {
-    a != "-"
-        && b != "-"
-        && fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
+    // A path that leads nowhere is told of where it is written to.
+    a != "-" && b != "-" && whole(a).is_some_and(|a| whole(b).is_some_and(|b| a == b))
+}
+
+/// The one path of a file: without links, `.` and `..`, as far as there are folders.
+fn whole(path: &str) -> Option<PathBuf> {
+    let target = followed(Path::new(path)).ok()?;
+    if let Ok(known) = fs::canonicalize(&target) {
+        return Some(known);
+    }
+    Some(fs::canonicalize(folder_of(&target)).ok()?.join(target.file_name()?))
+}
+
+/// The folder that a file stands in.
+fn folder_of(target: &Path) -> &Path {
+    target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Links that lead on farther than this lead in a circle.
@@ -163,16 +176,56 @@ const MOST_LINKS: usize = 40;
 /// Writes a file beside its target and renames it, so that it is there whole or not at all. Its mode is kept, links are
 /// followed, a device or pipe is written directly.
 pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Diagnostics> {
-    if path.is_empty() {
-        return Err(Diagnostic::error("output-failed", "the output file has no name").into());
+    write_files(&[(path, text)])
+}
+
+/// Writes files, all or none of them: each beside its target first, then all are renamed. `-` is standard output; that and
+/// devices come last, since nothing takes back what they got.
+pub(crate) fn write_files(files: &[(&str, &str)]) -> Result<(), Diagnostics> {
+    let said = |path: &str, error: anyhow::Error| {
+        failed("output-failed", &error.context(format!("cannot write {path}")))
+    };
+    let mut waiting = Vec::new();
+    for (path, text) in files {
+        if *path == "-" {
+            waiting.push((*path, Staged::Print(text)));
+            continue;
+        }
+        if path.is_empty() {
+            return Err(Diagnostic::error("output-failed", "the output file has no name").into());
+        }
+        if Path::new(path).is_dir() {
+            return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
+        }
+        let alone = files.len() == 1;
+        let staged = followed(Path::new(path)).and_then(|target| Staged::new(target, text, alone));
+        waiting.push((*path, staged.map_err(|error| said(path, error))?));
     }
-    if Path::new(path).is_dir() {
-        return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
+    waiting.sort_by_key(|(_, staged)| match staged {
+        Staged::Beside { .. } => 0,
+        Staged::Device(..) => 1,
+        Staged::Print(_) => 2,
+    });
+    let mut done: Vec<Undo> = Vec::new();
+    for (path, staged) in waiting {
+        let placed = match staged {
+            Staged::Beside { target, file, undo } => file
+                .persist(&target)
+                .map(|_| done.push(undo))
+                .map_err(|error| io::Error::from(error.error.kind()))
+                .context("the new file cannot take its place")
+                .map_err(|error| said(path, error)),
+            Staged::Device(target, text) => {
+                fs::write(&target, text).map_err(|error| said(path, error.into()))
+            }
+            Staged::Print(text) => print(text),
+        };
+        if let Err(error) = placed {
+            done.into_iter().for_each(Undo::undo);
+            return Err(error);
+        }
     }
-    followed(Path::new(path))
-        .and_then(|target| replace(&target, text))
-        .with_context(|| format!("cannot write {path}"))
-        .map_err(|error| failed("output-failed", &error))
+    Ok(())
 }
 
 /// Where a path leads through its links; the last of them may lead to a file that is not there yet.
@@ -188,36 +241,72 @@ fn followed(path: &Path) -> anyhow::Result<PathBuf> {
     anyhow::bail!("it is a link that leads nowhere")
 }
 
-fn replace(target: &Path, text: &str) -> anyhow::Result<()> {
-    let old = fs::metadata(target).ok();
-    if old.as_ref().is_some_and(|old| !old.is_file()) {
-        return Ok(fs::write(target, text)?);
+/// A text that waits beside its target; that of a device or of standard output waits here.
+enum Staged<'t> {
+    Beside { target: PathBuf, file: tempfile::NamedTempFile, undo: Undo },
+    Device(PathBuf, &'t str),
+    Print(&'t str),
+}
+
+/// How a file that took its place is taken back.
+enum Undo {
+    /// Not: it is the only one, or what stood there may not be read.
+    Nothing,
+    /// There was none.
+    Remove(PathBuf),
+    /// What stood there.
+    Restore(PathBuf, Vec<u8>),
+}
+
+impl Undo {
+    /// Takes it back; where the system refuses even that, the first refusal is what is told.
+    fn undo(self) {
+        let _ = match self {
+            Undo::Nothing => Ok(()),
+            Undo::Remove(target) => fs::remove_file(target),
+            Undo::Restore(target, bytes) => fs::write(target, bytes),
+        };
     }
-    // A file that may not be written to is not replaced behind its owner's back.
-    if old.is_some() {
-        fs::OpenOptions::new().write(true).open(target)?;
+}
+
+impl<'t> Staged<'t> {
+    /// Puts a text beside its target. `alone`: no other file has to be taken back with it.
+    fn new(target: PathBuf, text: &'t str, alone: bool) -> anyhow::Result<Staged<'t>> {
+        let old = fs::metadata(&target).ok();
+        if old.as_ref().is_some_and(|old| !old.is_file()) {
+            return Ok(Staged::Device(target, text));
+        }
+        // A file that may not be written to is not replaced behind its owner's back.
+        if old.is_some() {
+            fs::OpenOptions::new().write(true).open(&target)?;
+        }
+        // Of an error the kind alone: its text may name the file beside the target.
+        let plain = |error: io::Error| io::Error::from(error.kind());
+        let folder = folder_of(&target);
+        anyhow::ensure!(folder.is_dir(), "there is no folder {}", folder.display());
+        let beside = || format!("no new file can stand in {}", folder.display());
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        if old.is_none() {
+            use std::os::unix::fs::PermissionsExt;
+            // As `open` makes files: the umask takes its share.
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let mut file =
+            builder.prefix(".splinepost-").tempfile_in(folder).map_err(plain).with_context(beside)?;
+        file.write_all(text.as_bytes()).map_err(plain)?;
+        if let Some(old) = &old {
+            file.as_file()
+                .set_permissions(old.permissions())
+                .map_err(plain)
+                .context("its mode cannot be kept")?;
+        }
+        file.as_file().sync_all().map_err(plain)?;
+        let undo = match old {
+            _ if alone => Undo::Nothing,
+            None => Undo::Remove(target.clone()),
+            Some(_) => fs::read(&target).map_or(Undo::Nothing, |bytes| Undo::Restore(target.clone(), bytes)),
+        };
+        Ok(Staged::Beside { target, file, undo })
     }
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    anyhow::ensure!(folder.is_dir(), "there is no folder {}", folder.display());
-    // Of an error the kind alone: its text may name the file beside the target.
-    let plain = |error: io::Error| io::Error::from(error.kind());
-    let beside = || format!("no new file can stand in {}", folder.display());
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    if old.is_none() {
-        use std::os::unix::fs::PermissionsExt;
-        // As `open` makes files: the umask takes its share.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.prefix(".splinepost-").tempfile_in(folder).map_err(plain).with_context(beside)?;
-    file.write_all(text.as_bytes()).map_err(plain)?;
-    if let Some(old) = &old {
-        file.as_file()
-            .set_permissions(old.permissions())
-            .map_err(plain)
-            .context("its mode cannot be kept")?;
-    }
-    file.as_file().sync_all().map_err(plain)?;
-    file.persist(target).map_err(|error| plain(error.error)).context("the new file cannot take its place")?;
-    Ok(())
 }

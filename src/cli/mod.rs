@@ -149,10 +149,18 @@ fn motion(name: Option<&str>, machine: &Machine) -> Result<Option<&'static Motio
     })
 }
 
-/// A tolerance on the command line must be a positive number.
-fn tolerance(text: &str) -> Result<f64, String> {
+/// A length on the command line must be a positive number.
+fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if 0.0 < x && x.is_finite() => Ok(x),
         _ => Err("a number of mm greater than zero is needed".to_owned()),
+    }
+}
+
+/// A tolerance on the command line is one that holds something.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match length(text)? {
+        x if x <= splinepost::MOST_TOLERANCE => Ok(x),
+        _ => Err(format!("at most {} mm", splinepost::MOST_TOLERANCE)),
     }
 }

@@ -56,7 +56,7 @@ impl Plot {
                     return Err(Diagnostic::error("against-unused", message).into());
                 }
                 let machine = self.subject.machine(sources)?;
-                let program = machine.map(|machine| compiled(sources, language, machine)).transpose()?;
+                let program = machine.map(|machine| compiled(sources, language, &machine)).transpose()?;
                 (program, Some(intent.as_ref().clone()))
             }
         };
@@ -154,14 +154,14 @@ fn drawn(kind: Kind, figures: &[Figure], summary: &str, sources: &Sources) -> Re
     drawn.map_err(|error| Diagnostic::error("figure-failed", error.to_string()).into())
 }
 
-/// The program that is written for a machine.
+/// The program that is written for a machine, and the machine as that wants it.
 fn compiled(
     sources: &Sources,
     language: &Language,
-    machine: Machine,
+    machine: &Machine,
 ) -> Result<(Machine, String), Diagnostics> {
-    let output = splinepost::compile(sources, language, &machine, &Options::default());
-    output.map(|output| (machine, output.text)).map_err(|failure| failure.diagnostics)
+    let output = splinepost::compile(sources, language, machine, &Options::default());
+    output.map(|output| (output.machine, output.text)).map_err(|failure| failure.diagnostics)
 }
 
 /// The paper's figures of a flute: its odd-even points, or with the direct method the points of its chords.

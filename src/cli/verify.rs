@@ -50,7 +50,7 @@ impl Verify {
         let (intent, tolerance) = (&verified.intent, verified.tolerance);
         console.summary(&Summary::new(
             intent,
-            &machine,
+            &verified.machine,
             None,
             &text,
             report,

@@ -8,6 +8,20 @@
 //! ```
 //!
 //! I J K and TURN are never modal.
+//!
+//! # An end that is not on the circle
+//!
+//! Start, end and centre are three rounded places, so that the radii to start and end differ. A control compares them and stops
+//! where they differ by more than its own limit:
+//!
+//! | control | limit |
+//! |---|---|
+//! | Sinumerik | machine data 21000 or, of large circles, 21010 times the radius: alarm 14040 |
+//! | Heidenhain | `circleDeviation` or MP 7431, 0.016 mm at most |
+//! | Mazak | a parameter of the machine |
+//!
+//! What a control makes of less is its own: one moves the centre, another the radius along the way. So what rounding explains is
+//! taken for one circle, more is warned of, and beyond [`MISFIT_REFUSED`] nobody knows which circle was meant.
 
 use super::assemble::Assembler;
 use super::modal::Modal;
@@ -19,6 +33,13 @@ use crate::machine::Machine;
 use crate::source::Span;
 use crate::units::Axis;
 use crate::verify::to_arc;
+
+/// Programs are commonly rounded to so many decimals, whatever the control takes.
+const COMMON_DIGITS: u8 = 3;
+
+/// Radii to start and end that differ by more are those of no circle, mm. Below the greatest figure that a Heidenhain can be set
+/// to, and three times what three decimals explain.
+pub const MISFIT_REFUSED: f64 = 0.01;
 
 /// The letters of the centre, in the order of X Y Z.
 const CENTER: [u8; 3] = *b"IJK";
@@ -166,12 +187,33 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
     add(assembler, arc, &end, said.span);
 }
 
-/// Adds an arc that has a radius.
+/// Adds an arc that has a radius, and an end on its circle.
 pub fn add(assembler: &mut Assembler<'_>, arc: WrittenArc, end: &Units, span: Span) {
     if to_arc(&assembler.empty(), &arc).is_none() {
         let diagnostic = Diagnostic::error("arc-radius", "this arc has no radius").at(span, "");
         assembler.diagnostics.push(diagnostic);
         return;
+    }
+    match arc.by {
+        ArcBy::Center(circle, _) => {
+            let misfit = circle.misfit(&assembler.digits, (&arc.start, end));
+            let common = assembler.digits.map(|digits| digits.min(COMMON_DIGITS));
+            let refused = MISFIT_REFUSED.max(circle.rounding(&assembler.digits));
+            if refused < misfit {
+                let message = format!(
+                    "this arc ends beside its circle: the radii to its start and to its end differ by {misfit:.4} mm"
+                );
+                assembler.diagnostics.push(Diagnostic::error("arc-misfit", message).at(span, "").hint(
+                    format!(
+                        "up to {refused} mm is read; a control stops here, or runs a circle of its own choice"
+                    ),
+                ));
+            } else if circle.rounding(&common) < misfit {
+                assembler.misfits(misfit, span);
+            }
+        }
+        // Neither states an end beside another circle.
+        ArcBy::Way(_) | ArcBy::Turn(..) => {}
     }
     assembler.curve(Written::Arc(arc), end, span);
 }

@@ -66,6 +66,8 @@ pub struct Assembler<'m> {
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.
     unknown: Option<([bool; MAX_AXES], Span)>,
+    /// How many arcs end beside their circle by more than rounding, and by how much and where the worst of them, mm.
+    misfits: Option<(usize, f64, Span)>,
 }
 
 impl<'m> Assembler<'m> {
@@ -102,6 +104,7 @@ impl<'m> Assembler<'m> {
             led: false,
             named: [false; MAX_AXES],
             unknown: None,
+            misfits: None,
         }
     }
 
@@ -377,6 +380,13 @@ impl<'m> Assembler<'m> {
         self.step(Step::Cut(cut), span);
     }
 
+    /// Remembers an arc whose radii differ by so much, mm: there is one warning for all of them.
+    pub fn misfits(&mut self, misfit: f64, span: Span) {
+        let (count, worst, at) = self.misfits.unwrap_or((0, 0.0, span));
+        let (worst, at) = if worst < misfit { (misfit, span) } else { (worst, at) };
+        self.misfits = Some((count + 1, worst, at));
+    }
+
     /// The program, or what is wrong with it.
     ///
     /// # Errors
@@ -392,6 +402,19 @@ impl<'m> Assembler<'m> {
                     "the first cut starts at a position that the text does not say",
                 )
                 .at(span, "starts from an unknown position"),
+            );
+        }
+        if let Some((count, worst, span)) = self.misfits {
+            let arcs = if count == 1 { "an arc ends".to_owned() } else { format!("{count} arcs end") };
+            let message = format!(
+                "{arcs} beside its circle by more than rounding: radii to start and end differ by up to {worst:.4} mm"
+            );
+            let message =
+                if count == 1 { message } else { message.replacen("its circle", "their circles", 1) };
+            self.diagnostics.push(
+                Diagnostic::warning("arc-misfit", message)
+                    .at(span, "the worst")
+                    .hint("a control stops here if its limit is less, or runs a circle of its own choice"),
             );
         }
         let warnings = self.diagnostics.into_result()?;

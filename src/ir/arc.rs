@@ -47,6 +47,30 @@ impl Circle {
         let [u, v, _] = self.plane.axes();
         [units_to_f64(self.center[0], digits[u]), units_to_f64(self.center[1], digits[v])]
     }
+
+    /// By how much the radii to the start and to the end of an arc differ, mm: | |s − c| − |e − c| |, which is what controls look
+    /// at before they run one.
+    pub fn misfit(&self, digits: &[u8; MAX_AXES], (start, end): (&Units, &Units)) -> f64 {
+        let [u, v, _] = self.plane.axes();
+        let [x, y] = self.place(digits);
+        let radius = |p: &Units| {
+            let (a, b) = (units_to_f64(p[u], digits[u]) - x, units_to_f64(p[v], digits[v]) - y);
+            (a * a + b * b).sqrt()
+        };
+        (radius(start) - radius(end)).abs()
+    }
+
+    /// The most that [`Circle::misfit`] is where start, end and centre lie on one circle but for their rounding, mm.
+    ///
+    /// Each of the three is off by half a unit in both axes of the plane, so by ρ = √(h_u² + h_v²) at most. The start moves its
+    /// own radius by ρ, the end its own, the centre both: 4ρ. A centre that is counted from the start is off by that of the start
+    /// too, which leaves the radius of the start its own ρ alone, and that of the end three: 4ρ again. Some of the last place of a
+    /// float is added.
+    pub fn rounding(&self, digits: &[u8; MAX_AXES]) -> f64 {
+        let [u, v, _] = self.plane.axes();
+        let half = |i: usize| 0.5 * units_to_f64(1, digits[i]);
+        4.0 * (half(u) * half(u) + half(v) * half(v)).sqrt() * (1.0 + 1.0e-6)
+    }
 }
 
 impl WrittenArc {

@@ -99,9 +99,11 @@ impl Reader {
             }
         };
         if let Some(tolerance) = &file.tolerance
-            && !(0.0 < *tolerance.get_ref() && tolerance.get_ref().is_finite())
+            && !(0.0 < *tolerance.get_ref() && *tolerance.get_ref() <= crate::MOST_TOLERANCE)
         {
-            self.error("tolerance-range", "tolerance must be greater than zero", tolerance.span());
+            let message =
+                format!("tolerance must be greater than zero, and at most {} mm", crate::MOST_TOLERANCE);
+            self.error("tolerance-range", message, tolerance.span());
         }
         let axes_file = file.axes.unwrap_or_default();
         let axes = self.axes(&axes_file, base);
@@ -159,6 +161,7 @@ impl Reader {
         let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
         self.turns_as_stated(&frame, orientation, dialect);
         self.tilts(&frame);
+        self.lengths(&frame);
         let cutter_axes = self.cutter_axes(axes_file.cutter.as_ref(), base)?;
         Some(Machine {
             name: self.or(file.name, base.map(|b| b.name.clone()), "name")?,

@@ -209,6 +209,47 @@ mod tests {
         );
         assert!(Machine::parse("", SourceId::INPUT).unwrap_err().has_errors());
     }
+
+    #[test]
+    fn a_tool_gets_its_length_again_where_home_ended_it() {
+        let ids = |dialect: &str, lines: &str| -> Vec<&'static str> {
+            let text = format!("extends = \"{dialect}\"\n[program]\n{lines}\n");
+            Machine::parse(&text, SourceId::INPUT)
+                .map_or_else(|e| e.0.iter().map(|d| d.id).collect(), |_| Vec::new())
+        };
+        let sinumerik = |lines: &str| ids("sinumerik", lines);
+        for tool in [
+            "\"T{tool}\", \"M6\"",
+            "\"T{tool} D0\", \"M6\"",
+            "\"D1\", \"T{tool} M6 D0\"",
+            "\"T{tool} M6 ;D1\"",
+        ] {
+            assert_eq!(sinumerik(&format!("tool = [{tool}]")), ["tool-length"], "{tool}");
+        }
+        for tool in
+            ["\"T{tool}\", \"M6\", \"D1\"", "\"T{tool} M6 D=2\"", "\"T{tool}D1 M6\"", "\"T1 M6 D{tool}\""]
+        {
+            assert!(sinumerik(&format!("tool = [{tool}]")).is_empty(), "{tool}");
+        }
+        // Where nothing ends it, nothing has to call it.
+        assert!(sinumerik("tool = [\"T{tool}\", \"M6\"]\nhome = [\"G0 SUPA {home}\"]").is_empty());
+        assert_eq!(sinumerik("tool_spindle = [\"T{tool} M6 S{rpm} M3\"]"), ["tool-length"]);
+        assert_eq!(sinumerik("plane = ['CYCLE800({first},{second},{third})']"), ["plane-length"]);
+        // A control that takes the length from its tool data has no G43.
+        assert!(ids("mazak", "tool = [\"T{tool} M6\"]").is_empty());
+    }
+
+    #[test]
+    fn places_of_rotary_axes_are_no_direction() {
+        let told = |line: &str| {
+            let text = format!("extends = \"mazak\"\n[program]\ntip_control = [\"{line}\"]\n");
+            Machine::parse(&text, SourceId::INPUT).map_or_else(|e| e.0[0].id, |_| "")
+        };
+        assert_eq!(told("G43.4 H{tool}"), "mode-not-granted");
+        assert_eq!(told("G43.4H{tool}"), "mode-not-granted");
+        assert_eq!(told("G43.5 H{tool}"), "");
+    }
+
     #[test]
     fn lines_round_a_program_leave_it_as_it_takes_itself_to_be() {
         let told = |dialect: &str, key: &str, lines: &str| {

@@ -295,6 +295,12 @@ impl Quantiser<'_> {
         let turns = (arc.turns() - once.turns()).round().max(0.0) as u32;
         match word.map(|word| if loose { ArcWord::Turn } else { word }) {
             None => self.arc_in_lines(arc),
+            // An arc that was asked beside its circle: no control takes it for one, however many decimals hold its end.
+            Some(ArcWord::Center)
+                if circle.rounding(&self.digits) < circle.misfit(&self.digits, (&start, &end)) =>
+            {
+                self.arc_in_lines(arc)
+            }
             Some(ArcWord::Center) => {
                 self.arrive(&end);
                 Ok(Written::Arc(WrittenArc { by: ArcBy::Center(circle, turns), ..stated }))

@@ -94,6 +94,12 @@ pub const MAZAK: Dialect = Dialect {
         Granted { what: "coordinates are in mm", right: &["G21"], wrong: &["G20"] },
         Granted { what: "F is per minute", right: &["G94"], wrong: &["G93", "G95"] },
         Granted { what: "the plane is XY", right: &["G17"], wrong: &["G18", "G19"] },
+        // Type 1 of tool centre point control takes places of the rotary axes, and the writer has none.
+        Granted {
+            what: "I J K are the direction of the tool where its tip is led",
+            right: &["G43.5"],
+            wrong: &["G43.4"],
+        },
     ],
     inverse_time: true,
     round: Round::Place,

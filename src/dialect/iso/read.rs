@@ -18,6 +18,7 @@ use crate::dialect::frame::{Frame, Met};
 use crate::dialect::{Form, Reading};
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
+use crate::machine::template::Template;
 use crate::machine::{Machine, RotaryFeed};
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
@@ -162,7 +163,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
                 reader.flush();
             }
             if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
-                reader.tool_line(body, &offset);
+                reader.tool_line(body, &offset, line.range());
                 reader.home_line(body);
                 if reader.assembler.begins_tip_control() {
                     // Its lines hold the length of the tool.
@@ -196,13 +197,23 @@ impl Reader<'_> {
     }
 
     /// Where a fixed line calls a tool, the offset that was taken out of the machine's lines must follow.
-    fn tool_line(&mut self, body: &str, offset: &Offset<'_>) {
-        let frame = &self.assembler.machine.frame;
+    fn tool_line(&mut self, body: &str, offset: &Offset<'_>, range: Range<usize>) {
+        let machine = self.assembler.machine;
+        let frame = &machine.frame;
+        let is = |lines: &[Template]| lines.first().is_some_and(|line| line.matched(body).is_some());
         for (lines, due) in [(&frame.tool, offset.tool), (&frame.tool_spindle, offset.tool_spindle)] {
-            if due && lines.first().is_some_and(|template| template.matched(body).is_some()) {
-                self.offset_due = self.assembler.tool();
-                self.offset_tool = None;
+            match (is(lines), due) {
+                (false, _) => {}
+                (true, true) => {
+                    self.offset_due = self.assembler.tool();
+                    self.offset_tool = None;
+                }
+                // The length comes with the tool.
+                (true, false) => self.takes_length(range.clone()),
             }
+        }
+        if is(&frame.tip_control) {
+            self.takes_length(range);
         }
     }
 
@@ -345,6 +356,10 @@ impl Reader<'_> {
                 if self.assembler.name.is_empty() {
                     self.assembler.name = format!("O{value}");
                 }
+                if self.assembler.number == 0 {
+                    let number = value.units(0).and_then(|number| u32::try_from(number).ok());
+                    self.assembler.number = number.filter(|number| *number <= 9999).unwrap_or(0);
+                }
                 return;
             }
             _ => {
@@ -375,11 +390,16 @@ impl Reader<'_> {
             Some(20) => Motion::Arc(Sense::Clockwise),
             Some(30) => Motion::Arc(Sense::CounterClockwise),
             Some(tenths @ (170 | 180 | 190)) => {
-                block.plane = Some(match tenths {
+                let plane = match tenths {
                     170 => Plane::Xy,
                     180 => Plane::Zx,
                     _ => Plane::Yz,
-                });
+                };
+                if plane == Plane::Xy || self.assembler.machine.arc_planes {
+                    block.plane = Some(plane);
+                } else {
+                    self.length_elsewhere(plane, "[arcs] planes = true says that it does not", range);
+                }
                 return;
             }
             Some(62) if dialect.motion_of(Form::Nurbs).is_some() => Motion::Nurbs,

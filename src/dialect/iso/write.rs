@@ -53,13 +53,18 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A line of fixed words. It stands in X Y, so that a length of a tool that it calls counts along Z.
-    fn line(&mut self, text: &str) {
+    /// Leaves another plane than X Y, so that a length of a tool that is called from here on counts along Z.
+    fn leave_plane(&mut self) {
         if self.plane.take_if(|plane| *plane != Plane::Xy).is_some() {
             self.modal.begin("N");
             self.modal.text(arc::plane_word(Plane::Xy));
             self.modal.end();
         }
+    }
+
+    /// A line of fixed words. It stands in X Y.
+    fn line(&mut self, text: &str) {
+        self.leave_plane();
         if is_block(text) || (text.starts_with('(') && self.modal.machine.text.number_comments) {
             self.modal.begin("N");
         }
@@ -79,6 +84,7 @@ impl Writer<'_> {
                         ToolLines::Alone => self.offset.tool,
                     };
                     // A program can be restarted at each tool.
+                    self.leave_plane();
                     self.modal.forget();
                     self.plane = None;
                     self.offset_tool = called.then_some(*tool);
@@ -95,6 +101,7 @@ impl Writer<'_> {
                     self.offset_due = self.offset_tool;
                 }
                 Part::Plane => {
+                    self.leave_plane();
                     self.modal.forget();
                     self.plane = None;
                 }

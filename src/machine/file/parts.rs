@@ -305,7 +305,8 @@ impl Reader {
             if let Some((word, span)) = last {
                 let message =
                     format!("behind `{word}` a program would not do what it says: {}", granted.what);
-                let hint = format!("put {} behind it, or leave it out", granted.right.join(" or "));
+                let right = granted.right.join(" or ");
+                let hint = format!("put {right} behind it or in its place, or leave it out");
                 let span = Span::new(self.source, span);
                 self.diagnostics.push(Diagnostic::error("mode-not-granted", message).at(span, "").hint(hint));
             }
@@ -328,8 +329,7 @@ impl Reader {
         }
     }
 
-    /// One of the lines of a tilted plane states its three angles, and where the retraction before them ends the length of the
-    /// tool they call it again.
+    /// One of the lines of a tilted plane states its three angles.
     pub(super) fn tilts(&mut self, frame: &Frame) {
         if frame.plane.is_empty() {
             return;
@@ -346,16 +346,34 @@ impl Reader {
             let message = "one line of plane states {first}, {second} and {third}, each once";
             self.diagnostics.push(Diagnostic::error("plane-angles", message));
         }
-        let says = |lines: &[Template], is: fn(&str) -> bool| {
-            lines.iter().any(|line| line.0.split_whitespace().any(is))
-        };
-        let length = |word: &str| word != "D0" && word.starts_with('D') && word[1..].parse::<u32>().is_ok();
-        if says(&frame.home, |word| word == "D0") && !says(&frame.plane, length) {
-            let message = "D0 in home ends the length of the tool, and plane does not call it again";
-            self.diagnostics.push(
-                Diagnostic::error("plane-length", message)
-                    .hint("put D1 before the line that tilts the plane"),
-            );
+    }
+
+    /// Where the retraction before a tool or a plane ends the length of the tool, their lines call one.
+    ///
+    /// That a control takes an edge by itself behind M6 is its machine data (20270 on a Sinumerik), which no machine file knows,
+    /// and D1 says no more than that does. A retraction by G49 is not looked at: a control that takes the length from its tool
+    /// data has no G43.
+    pub(super) fn lengths(&mut self, frame: &Frame) {
+        let edge = |lines: &[Template]| lines.iter().filter_map(|line| last_edge(&line.0)).next_back();
+        if edge(&frame.home) != Some(false) {
+            return;
+        }
+        let lists = [
+            ("tool-length", "tool", &frame.tool, "put D1 behind the line that changes the tool"),
+            (
+                "tool-length",
+                "tool_spindle",
+                &frame.tool_spindle,
+                "put D1 behind the line that changes the tool",
+            ),
+            ("plane-length", "plane", &frame.plane, "put D1 before the line that tilts the plane"),
+        ];
+        for (id, key, lines, hint) in lists {
+            if !lines.is_empty() && edge(lines) != Some(true) {
+                let message =
+                    format!("D0 in home ends the length of the tool, and {key} does not call it again");
+                self.diagnostics.push(Diagnostic::error(id, message).hint(hint));
+            }
         }
     }
 
@@ -535,4 +553,24 @@ fn words(line: &str) -> Vec<String> {
         before = c;
     }
     words
+}
+
+/// Whether the last D of a line calls a length of the tool or, D0, ends it; none where it has no D: `T1D1`, `D=2`, `D{tool}`.
+fn last_edge(line: &str) -> Option<bool> {
+    let line = line.split(';').next().unwrap_or_default().to_ascii_uppercase();
+    let (mut last, mut quoted, mut before) = (None, false, ' ');
+    for (at, c) in line.char_indices() {
+        quoted ^= c == '"';
+        if c == 'D' && !quoted && !before.is_ascii_alphabetic() && before != '_' {
+            let value = line[at + 1..].trim_start().trim_start_matches('=').trim_start();
+            let digits: &str = &value[..value.bytes().take_while(u8::is_ascii_digit).count()];
+            match digits {
+                "" if value.starts_with('{') => last = Some(true),
+                "" => {}
+                digits => last = Some(digits.bytes().any(|digit| digit != b'0')),
+            }
+        }
+        before = c;
+    }
+    last
 }

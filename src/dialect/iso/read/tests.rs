@@ -222,3 +222,17 @@ fn remarks_end_no_spline() {
         .collect();
     assert_eq!(shown, ["step", "3", "HERE", "1"]);
 }
+
+#[test]
+fn a_length_is_taken_in_x_y() {
+    let ids = |text: &str, more: &str| -> Vec<&'static str> {
+        let machine = machine(&(FLAT.replace("\"X\", \"Y\"", "\"X\", \"Y\", \"Z\"") + more));
+        read(text, SourceId::INPUT, &machine)
+            .map_or_else(|e| e.0.iter().map(|d| d.id).collect(), |_| Vec::new())
+    };
+    let arc = "T1 M6\nG0 X0. Y0.\nG43 H1 Z10.\nG1 Z0. F100.\nG18 G2 X5. Z5. I0. K5.\n";
+    assert_eq!(ids(&format!("{arc}G17\nT2 M6\nG0 G43 H2 Z9.\n"), ""), [""; 0]);
+    assert_eq!(ids(&format!("{arc}T2 M6\nG17 G0 G43 H2 Z9.\n"), ""), [""; 0]);
+    assert_eq!(ids(&format!("{arc}T2 M6\nG0 G43 H2 Z9.\n"), ""), ["arc-plane"]);
+    assert_eq!(ids(arc, "[arcs]\nplanes = false\n")[0], "arc-plane");
+}

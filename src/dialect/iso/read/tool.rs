@@ -1,9 +1,27 @@
 //! The length of the tool, G43, and its direction where the tip is led.
 
 use super::{Block, Motion, Reader};
+use crate::diagnostic::Diagnostic;
+use crate::dialect::arc;
+use crate::geom::arc::Plane;
 use std::ops::Range;
 
 impl Reader<'_> {
+    /// The length of a tool is taken here: along Z in G17, and nobody knows along which axis in another plane.
+    pub(super) fn takes_length(&mut self, range: Range<usize>) {
+        if self.plane != Plane::Xy {
+            self.length_elsewhere(self.plane, "put G17 before it", range);
+        }
+    }
+
+    /// What is wrong where a plane may turn the length of the tool.
+    pub(super) fn length_elsewhere(&mut self, plane: Plane, hint: &str, range: Range<usize>) {
+        let word = arc::plane_word(plane);
+        let message = format!("in {word} the control may take the tool's length along another axis");
+        let diagnostic = Diagnostic::error("arc-plane", message).at(self.assembler.span(range), "");
+        self.assembler.diagnostics.push(diagnostic.hint(hint));
+    }
+
     /// Where the tip is led, I J K of a rapid or a straight move are the tool's direction; false where that is wrong.
     pub(super) fn directed(&mut self, block: &mut Block, whole: Range<usize>) -> bool {
         let straight = matches!(self.motion, Motion::Rapid | Motion::Line);
@@ -40,6 +58,7 @@ impl Reader<'_> {
                 self.offset_due = None;
                 self.offset_again = None;
                 self.offset_tool = Some(tool);
+                self.takes_length(whole);
             }
             (Some(range), _, _) => {
                 self.error("tool-offset", "G43 H is read after a tool call that asks for it", range);
