@@ -8,7 +8,7 @@
 //! | tools, spindle, coolant, stops, dwells, homes, an operator's parameters, their order | exactly |
 //! | rapids | where each leads to, exactly; one that moves nothing is none |
 //! | paths at feed, of any blocks: lines, arcs, polynomials, B-splines | by a bound on their distance, both run in order |
-//! | F | exactly where the paths meet; by the time of the path where the machines measure it differently |
+//! | F | exactly where the paths meet, every one in its order; by the time of the path where the machines measure it differently |
 //! | the control's own splines | their points, and that both are of one kind |
 //! | remarks, block numbers, names, work offsets, subprograms, the lines round a program | not: they are no motion |
 //!
@@ -20,6 +20,7 @@
 //! tolerances, and is not looked for. The answer does not depend on which program is named first: two programs are the same when either
 //! order shows it.
 
+mod pace;
 mod path;
 mod report;
 mod side;
@@ -153,7 +154,8 @@ pub fn compare(
     place(&mut second, &first)?;
     let tolerance = options.tolerance.unwrap_or(first.tolerance() + second.tolerance());
     let radius = options.radius.or(first.radius()).or(second.radius()).unwrap_or(DEGREES);
-    let turn = first.turn().max(second.turn());
+    // As with the tolerance: each may be so far from what was asked of both.
+    let turn = first.turn() + second.turn();
     let rule = Scale { tolerance, turn, radius };
     let text = |sources: &Sources| sources.get(SourceId::INPUT).map_or(String::new(), |s| s.text.clone());
     let (text_a, text_b) = (text(a), text(b));

@@ -150,6 +150,25 @@ pub fn recompile(
 fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
     let intent = with_options(intent, options);
     let intent = pass::place::place(intent, machine)?;
+    if !options.fit {
+        return compile_placed(intent, machine, options);
+    }
+    // A spline may ask for what lines do not: accelerations inside blocks, axes that splines do not move, decimals. What goes
+    // through as lines is no worse for having been asked as splines.
+    let refused = match compile_placed(intent.clone(), machine, options) {
+        Ok(output) => return Ok(output),
+        Err(refused) => refused,
+    };
+    match compile_placed(intent, machine, &Options { fit: false, ..*options }) {
+        Ok(mut output) => {
+            output.warnings.push(fit_refused(&refused.diagnostics));
+            Ok(output)
+        }
+        Err(_) => Err(refused),
+    }
+}
+
+fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
     let machine = machine.with_axes(&intent.program.axes)?;
     if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {
         let diagnostic = match intent.name_span {
@@ -238,12 +257,9 @@ struct Attempt<'a> {
     options: &'a Options,
 }
 
-/// The share of the tolerance that splines through points may take: the way between the points takes some too.
-const FIT_SHARE: f64 = 0.8;
-
 /// How runs of lines become splines within `tolerance` mm.
 fn fitting(tolerance: f64, options: &Options) -> Fitting {
-    Fitting { tolerance: FIT_SHARE * tolerance, corner: options.corner.unwrap_or(smooth::CORNER) }
+    Fitting { tolerance, corner: options.corner.unwrap_or(smooth::CORNER) }
 }
 
 impl Attempt<'_> {
@@ -292,6 +308,12 @@ fn nothing_splined(motion: &Motion) -> Diagnostic {
         }
     };
     Diagnostic::note("nothing-fitted", message)
+}
+
+/// What is said where a program goes through with its lines only.
+fn fit_refused(refused: &Diagnostics) -> Diagnostic {
+    let reason = refused.0.first().map_or("", |diagnostic| diagnostic.message.as_str());
+    Diagnostic::warning("fit-refused", format!("lines stay lines: with splines in their place {reason}"))
 }
 
 /// Reads a program and compares it with a settled intent.

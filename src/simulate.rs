@@ -223,7 +223,7 @@ impl Simulation<'_, '_> {
     }
 }
 
-/// As how many blocks of a spline `--fit` would write lines; none where they are no lines, or a spline has no fewer.
+/// As how many blocks `--fit` would write lines; none where they are no lines, or all of them would stay.
 fn instead(pieces: &[Piece<Shape>], tolerance: f64) -> Option<usize> {
     let scale = pieces.first()?.surface.0.map(|weight| if weight == 0.0 { 1.0 } else { weight });
     let scaled = |p: Position| std::array::from_fn(|i| scale[i] * p[i]);
@@ -233,6 +233,14 @@ fn instead(pieces: &[Piece<Shape>], tolerance: f64) -> Option<usize> {
         points.push(scaled(from));
     }
     points.extend(pieces.last().map(|piece| scaled(piece.curve.at(piece.to))));
-    smooth::spline(&points, smooth::Fitting { tolerance, corner: smooth::CORNER })
-        .map(|spline| spline.beziers().count())
+    let parts = smooth::parts(&points, smooth::Fitting { tolerance, corner: smooth::CORNER })?;
+    let (mut from, mut blocks) = (0, 0);
+    for part in &parts {
+        blocks += match part {
+            smooth::Part::Spline(spline, _) => spline.beziers().count(),
+            smooth::Part::Lines(last) => last - from,
+        };
+        from = part.last();
+    }
+    Some(blocks)
 }

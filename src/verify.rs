@@ -438,6 +438,10 @@ impl<'p> Cursor<'p> {
             None => found,
         };
         match (curve, &cut.curve) {
+            (Curve::Lines(line), written) if self.is_mixed(line, written) => {
+                let found = self.mixed(line, [feed, asked], tolerance)?;
+                Ok(Found { feed_error, ..found })
+            }
             (Curve::Lines(line), written @ Written::Lines(_)) => self.lines(line, written).map(timed),
             (Curve::Arc(arc), _) => self.arc(arc, tolerance).map(timed),
             (Curve::Logarithmic(log), _) => self.logarithmic(log, feed, tolerance, ideal),

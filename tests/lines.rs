@@ -278,7 +278,7 @@ fn a_corner_is_what_the_user_says() {
 /// Waves near ends and corners: a line, a quarter circle, a line, a corner, and a quarter circle again.
 #[test]
 fn splines_do_not_wave_at_ends_or_corners() {
-    use splinepost::geom::smooth::{CORNER, Fitting, spline};
+    use splinepost::geom::smooth::{CORNER, Fitting, Part, parts};
     let mut points: Vec<[f64; 6]> = Vec::new();
     let step = 0.1;
     let place = |x: f64, y: f64| [x, y, 0.0, 0.0, 0.0, 0.0];
@@ -304,7 +304,8 @@ fn splines_do_not_wave_at_ends_or_corners() {
         for p in &mut own {
             *p = place(p[0] + noise * random(), p[1] + noise * random());
         }
-        let fitted = spline(&own, Fitting { tolerance, corner: CORNER }).expect("a spline");
+        let parts = parts(&own, Fitting { tolerance, corner: CORNER }).expect("splines");
+        let [Part::Spline(fitted, _)] = &parts[..] else { panic!("{tolerance} {noise}: {parts:?}") };
         // Signed curvature along the spline: lines have none, arcs 0.2. That of a C2 cubic is continuous and about linear in
         // each span, and swings beside a step by no more than 2 − √3 of it, the ratio in which what a knot does to the
         // next one fades in least squares.

@@ -16,6 +16,8 @@
 //! | `exact` | conversions against exact rational arithmetic |
 //! | `fits` | few cubics, against the best there are |
 //! | `lines` | runs of lines as splines |
+//! | `runs` | runs of every kind: a fit is proved, or lines stay |
+//! | `feeds` | two programs beside each other: every changed F, and planes by their angle |
 //! | `machine` | golden programs run as on a machine, with what a careful machinist would not let pass |
 //! | `plot` | pages and sheets, and what they show |
 //! | `simulate` | the tables of `docs/simulation.md` |
@@ -30,6 +32,7 @@ mod damage;
 mod diff;
 mod errors;
 mod exact;
+mod feeds;
 mod files;
 mod fits;
 mod golden;
@@ -43,6 +46,7 @@ mod process;
 mod readme;
 mod robust;
 mod roundtrip;
+mod runs;
 mod schema;
 mod simulate;
 mod support;

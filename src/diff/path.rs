@@ -4,11 +4,12 @@
 //! that it meets. Where a bound is greater than the tolerance they part; the places behind one another where they do are told as
 //! one.
 //!
-//! F is compared where the paths meet, as a number, wherever both machines measure the path by the same length. Where one counts
+//! F is compared where the paths meet (`diff/pace.rs`), as a number, wherever both machines measure the path by the same length. Where one counts
 //! degrees and the other does not, or a line has its own time, the time of the whole path is compared.
 
+use super::pace::{Differs, Paces};
 use super::side::{Part, Shape, Side};
-use super::walk::{Farthest, Walk, same_number};
+use super::walk::{Farthest, Walk};
 use crate::diagnostic::Diagnostic;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric};
@@ -24,9 +25,9 @@ use crate::verify::Status;
 const TIME: f64 = 1.0e-3;
 
 /// A path, its parts as they count.
-struct Run<'s, 'a> {
+pub(super) struct Run<'s, 'a> {
     side: &'s Side<'a>,
-    parts: &'s [Part<'a>],
+    pub(super) parts: &'s [Part<'a>],
     /// The first piece of each part.
     first: Vec<usize>,
 }
@@ -42,10 +43,20 @@ impl<'s, 'a> Run<'s, 'a> {
         Run { side, parts, first }
     }
 
-    /// The part that a piece belongs to, and which of its pieces it is.
-    fn find(&self, piece: usize) -> (&'s Part<'a>, usize) {
+    /// The number of the part that a piece belongs to.
+    pub(super) fn part_of(&self, piece: usize) -> usize {
         // The first part begins at 0, so that there is one.
-        let at = self.first.partition_point(|first| *first <= piece).saturating_sub(1);
+        self.first.partition_point(|first| *first <= piece).saturating_sub(1)
+    }
+
+    /// The first piece of a part.
+    pub(super) fn first_of(&self, part: usize) -> usize {
+        self.first[part]
+    }
+
+    /// The part that a piece belongs to, and which of its pieces it is.
+    pub(super) fn find(&self, piece: usize) -> (&'s Part<'a>, usize) {
+        let at = self.part_of(piece);
         (&self.parts[at], piece - self.first[at])
     }
 
@@ -161,14 +172,6 @@ struct Parting {
     farthest: Farthest,
 }
 
-/// Where F differs, and how far.
-struct Slip {
-    at: [usize; 2],
-    feeds: [Option<f64>; 2],
-    length: f64,
-    told: bool,
-}
-
 impl<'a> Walk<'_, 'a> {
     /// Compares two paths.
     pub(super) fn paths(&mut self, a: &[Part<'a>], b: &[Part<'a>]) {
@@ -182,10 +185,9 @@ impl<'a> Walk<'_, 'a> {
             turn: if first.is_some() { self.turn } else { f64::INFINITY },
         };
         let timed = (a.measure() != b.measure() && (a.turns() || b.turns())) || a.is_timed() != b.is_timed();
-        let mut uneven = false;
         let mut farthest = Farthest::default();
         let mut parting: Option<Parting> = None;
-        let mut slip: Option<Slip> = None;
+        let mut paces = Paces::new([&a, &b], self.feed_digits(), self.tolerance);
         let same_turn = turn_of(self.a) == turn_of(self.b);
         let stream = Stream::new(a.pieces(&metric), b.pieces(&metric), rule);
         // Planes that differ a little move what is far from zero.
@@ -198,36 +200,24 @@ impl<'a> Walk<'_, 'a> {
                 if let Some(parting) = parting.take() {
                     self.part(&a, &b, &parting);
                 }
-                if !(timed || self.same_pace(&a, &b, &meeting, &mut uneven)) {
-                    let own = a.find(i).0.feed;
-                    let other = b.find(j).0.feed;
-                    let begun = slip.get_or_insert(Slip {
-                        at: [i, j],
-                        feeds: [own, other],
-                        length: 0.0,
-                        told: false,
-                    });
-                    begun.length += meeting.length;
-                    // Joints of one path need not be those of the other to the last micrometre.
-                    if 4.0 * self.tolerance < begun.length && !begun.told {
-                        begun.told = true;
-                        let (at, feeds) = (begun.at, begun.feeds);
-                        self.feeds_differ(|| [a.place(at[0]), b.place(at[1])], feeds);
-                    }
-                } else if 0.0 < meeting.length {
-                    slip = None;
+                if !timed && let Some(differs) = paces.meet(&meeting) {
+                    self.feeds(&a, &b, &differs);
                 }
             } else {
                 let known = parting.get_or_insert(Parting { first: [i, j], farthest: Farthest::default() });
                 known.farthest.take(bound, [i, j]);
+                paces.part();
             }
             farthest.take(bound, [i, j]);
         }
         self.found.take(&farthest, || [a.place(farthest.at[0]), b.place(farthest.at[1])]);
+        if let Some(differs) = paces.end() {
+            self.feeds(&a, &b, &differs);
+        }
         if let Some(parting) = parting {
             self.part(&a, &b, &parting);
         }
-        if timed || uneven {
+        if timed || paces.uneven {
             self.times(&a, &b);
         }
         self.found.paths += 1;
@@ -260,23 +250,10 @@ impl<'a> Walk<'_, 'a> {
         Bound { mm: meeting.distance + a.find(i).0.slack + b.find(j).0.slack, rad }
     }
 
-    /// Whether two parts have one F, or lines one time; `uneven` where only the times of the whole can be compared.
-    fn same_pace(&self, a: &Run, b: &Run, meeting: &Meeting, uneven: &mut bool) -> bool {
-        let ((own, i), (other, j)) = (a.find(meeting.at[0]), b.find(meeting.at[1]));
-        match (own.rate(i), other.rate(j)) {
-            (Some(own), Some(other)) if meeting.part == [[0.0, 1.0]; 2] => {
-                same_number(own, other, self.feed_digits())
-            }
-            (None, None) => match (own.feed, other.feed) {
-                (Some(own), Some(other)) => same_number(own, other, self.feed_digits()),
-                (None, None) => true,
-                (Some(_), None) | (None, Some(_)) => false,
-            },
-            (Some(_), Some(_)) | (Some(_), None) | (None, Some(_)) => {
-                *uneven = true;
-                true
-            }
-        }
+    /// Tells where F differs.
+    fn feeds(&mut self, a: &Run, b: &Run, differs: &Differs) {
+        let [i, j] = differs.at;
+        self.feeds_differ(|| [a.place(i), b.place(j)], differs.feeds);
     }
 
     /// Tells where two paths part.

@@ -131,7 +131,8 @@ pub(super) struct Walk<'s, 'a> {
     pub(super) turn: f64,
     pub(super) radius: f64,
     pub(super) metric: Metric,
-    /// How far the tilted planes are from each other in which both count here, as a share of a place's distance from zero.
+    /// The angle between the tilted planes in which both count here, radians: what it moves, as a share of a place's distance
+    /// from zero, is no more.
     pub(super) tilt: f64,
     pub(super) found: Found,
 }
@@ -210,14 +211,12 @@ impl<'s, 'a> Walk<'s, 'a> {
         self.metric.distance(p, q).mm
     }
 
-    /// How far a place may be moved by the difference of two tilted planes, as a share of its distance from zero: the length
-    /// of all differences of their axes together. It is at least the angle between them, radians.
+    /// The angle between two tilted planes, radians: by how much the one is turned from the other, about whatever axis. No
+    /// place is moved by more than this times its distance from zero.
     fn between_planes(&self, own: [f64; 3], other: [f64; 3]) -> Option<f64> {
         let plane =
-            |side: &Side<'a>, angles| Some(Rotation::of(side.machine?.orientation.plane_order, angles).0);
-        let (own, other) = (plane(self.a, own)?, plane(self.b, other)?);
-        let squares = own.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b) * (a - b));
-        Some(squares.sum::<f64>().sqrt())
+            |side: &Side<'a>, angles| Some(Rotation::of(side.machine?.orientation.plane_order, angles));
+        Some(plane(self.a, own)?.angle_to(&plane(self.b, other)?))
     }
 
     fn same_switch(&self, own: &Step<f64, ()>, other: &Step<f64, ()>) -> bool {

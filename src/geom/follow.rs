@@ -136,8 +136,25 @@ pub fn follow_turning(
         }
     }
     let mut bounds = Bounds::new(path, curve, direction, tolerance);
-    along(&tamed(path), &tamed(curve), &mut bounds);
+    along(&tamed(path), &tamed(curve), &mut bounds, |_, _| {});
     Ok(bounds.found(Map::Nearest))
+}
+
+/// Which pieces of `curve` cannot be said to be within `tolerance` of `path`, both run along together as in [`follow`], in
+/// order; both without weights.
+pub fn parted(path: &[Bezier], curve: &[Bezier], tolerance: f64) -> Vec<usize> {
+    let mut bounds = Bounds::new(path, curve, None, tolerance);
+    let mut far = Vec::new();
+    along(path, curve, &mut bounds, |bounds, at| {
+        if !(bounds.distance <= tolerance) {
+            far.push(at);
+        }
+        // Each interval has a bound of its own, and what was seen elsewhere makes none looser.
+        bounds.distance = 0.0;
+        bounds.seen = bounds.seen.min(tolerance);
+    });
+    far.dedup();
+    far
 }
 
 /// Bounds a piece against a piece with φ the identity; false where that is not within the tolerance.
@@ -421,14 +438,15 @@ fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
 
 /// One of the two paths, and where it has been run to.
 struct Runner<'a> {
-    rest: std::slice::Iter<'a, Bezier>,
+    pieces: &'a [Bezier],
+    /// Which piece it stands on.
+    at: usize,
     stand: Option<Stand>,
 }
 
 impl<'a> Runner<'a> {
     fn new(pieces: &'a [Bezier]) -> Runner<'a> {
-        let mut rest = pieces.iter();
-        Runner { stand: rest.next().map(Stand::new), rest }
+        Runner { pieces, at: 0, stand: pieces.first().map(Stand::new) }
     }
 
     /// Takes the part up to `t`; at 1 the next piece begins.
@@ -437,16 +455,18 @@ impl<'a> Runner<'a> {
         let part = stand.part(t);
         stand.t = t;
         if t == 1.0 {
-            self.stand = self.rest.next().map(Stand::new);
+            self.at += 1;
+            self.stand = self.pieces.get(self.at).map(Stand::new);
         }
         Some(part)
     }
 }
 
-/// Runs along both and bounds every interval.
-fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
+/// Runs along both and bounds every interval; `met` is told the piece of `curve` that it belongs to.
+fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds, mut met: impl FnMut(&mut Bounds, usize)) {
     let (mut p, mut c) = (Runner::new(path), Runner::new(curve));
     loop {
+        let at = c.at;
         let (to_p, to_c) = match (&p.stand, &c.stand) {
             (None, None) => return,
             // One has ended: it waits where it is for the other.
@@ -454,6 +474,7 @@ fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
                 let end = curve[curve.len() - 1].end();
                 if let Some(part) = p.take(1.0) {
                     interval(&part, &Bezier::line(end, end), bounds);
+                    met(bounds, at.min(curve.len() - 1));
                 }
                 continue;
             }
@@ -461,6 +482,7 @@ fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
                 let end = path[path.len() - 1].end();
                 if let Some(part) = c.take(1.0) {
                     interval(&Bezier::line(end, end), &part, bounds);
+                    met(bounds, at);
                 }
                 continue;
             }
@@ -468,6 +490,7 @@ fn along(path: &[Bezier], curve: &[Bezier], bounds: &mut Bounds) {
         };
         if let (Some(part), Some(other)) = (p.take(to_p), c.take(to_c)) {
             interval(&part, &other, bounds);
+            met(bounds, at);
         }
     }
 }

@@ -115,6 +115,21 @@ impl Rotation {
         Rotation(std::array::from_fn(|i| std::array::from_fn(|j| element(i, j))))
     }
 
+    /// The angle θ of the rotation that takes this one to another, radians, 0 ≤ θ ≤ π.
+    ///
+    /// It is the turn of R₁ᵀR₂, whose trace is 1 + 2 cos θ, so that with the sum of the squares of all differences
+    ///
+    /// ```text
+    /// ‖R₁ − R₂‖² = 2 tr(1 − R₁ᵀR₂) = 4 (1 − cos θ) = 8 sin² θ/2
+    /// ```
+    ///
+    /// A cosine says nothing of angles below 1e-8; the differences do.
+    pub fn angle_to(&self, other: &Rotation) -> f64 {
+        let columns = self.0.iter().flatten().zip(other.0.iter().flatten());
+        let squares: f64 = columns.map(|(a, b)| (a - b) * (a - b)).sum();
+        2.0 * atan2(squares.sqrt(), (8.0 - squares).max(0.0).sqrt())
+    }
+
     /// The angles of this rotation in degrees, each above −180 and at most 180. Where the second one leaves the third open,
     /// that is 0.
     pub fn angles(&self, order: Order) -> [f64; 3] {
@@ -170,6 +185,24 @@ mod tests {
 
     fn apart(a: &Rotation, b: &Rotation) -> f64 {
         (0..9).map(|n| (a.0[n / 3][n % 3] - b.0[n / 3][n % 3]).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_angle_between_rotations_is_that_of_the_turn_from_one_to_the_other() {
+        let order = Order::new("zxz").unwrap();
+        let own = Rotation::of(order, [31.0, 47.0, -112.0]);
+        assert_eq!(own.angle_to(&own), 0.0);
+        for axis in 0..3 {
+            for degrees in [1.0e-9, 1.0e-4, 0.009, 0.5, 30.0, 90.0, 179.0, -0.009, -120.0] {
+                let other = own.then(&Rotation::about(axis, degrees));
+                // Each element rounds some three times, by less than 2.2e-16 each; near half a turn cos θ/2 is 1/115, and errors
+                // count so much more.
+                let error = (own.angle_to(&other) - degrees.abs() / DEGREES).abs();
+                assert!(error < 115.0 * 9.0 * 2.2e-16 * 3.0, "{axis} {degrees}: {error:e}");
+                assert!(error < 1.0e-14 || 90.0 < degrees.abs(), "{axis} {degrees}: {error:e}");
+                assert_eq!(own.angle_to(&other), other.angle_to(&own));
+            }
+        }
     }
 
     #[test]

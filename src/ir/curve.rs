@@ -200,6 +200,28 @@ impl Polyline {
         line
     }
 
+    /// The lines behind the first `from` up to the one that is number `to`: from one of its points to another, the start
+    /// being number 0.
+    #[must_use]
+    pub fn part(&self, from: usize, to: usize) -> Polyline {
+        fn of<T: Clone>(all: &[T], from: usize, to: usize) -> Vec<T> {
+            let to = to.min(all.len());
+            all[from.min(to)..to].to_vec()
+        }
+        let start = match from.checked_sub(1).and_then(|last| self.values.chunks_exact(self.stride).nth(last))
+        {
+            Some(point) => padded(point),
+            None => self.start,
+        };
+        Polyline {
+            start,
+            stride: self.stride,
+            values: of(&self.values, from * self.stride, to * self.stride),
+            rates: of(&self.rates, from, to),
+            lines: of(&self.lines, from, to),
+        }
+    }
+
     /// Adds a point.
     pub fn push(&mut self, point: &Position) {
         self.values.extend_from_slice(&point[..self.stride]);

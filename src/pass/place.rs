@@ -11,7 +11,7 @@ mod tip;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
 use crate::machine::{Machine, PlaneApproach};
-use crate::units::{Axes, Axis, DEGREES, Kind, Position};
+use crate::units::{Axes, Axis, DEGREES, Kind};
 
 /// The axis that retracts before a tool turns: the third.
 const Z: usize = 2;
@@ -79,8 +79,8 @@ fn homes(intent: &mut Intent, machine: &Machine) {
 }
 
 /// From its home the tool goes over the work before it goes down. A rapid that brings an axis from its home brings the others
-/// first. Where a cut comes instead, the others go to its end at rapid, or to its start where it is no line, and the axis
-/// comes down at the feed of the cut: it starts wherever home is. To a tilted plane the machine may want all axes at once.
+/// first. Where a cut comes instead, the others go to its start at rapid, and the axis comes down to it at the feed of the cut:
+/// it starts wherever home is. To a tilted plane the machine may want all axes at once.
 fn over_the_work(intent: &mut Intent, approach: PlaneApproach) {
     let (count, steps) = (intent.program.axes.count(), &mut intent.program.steps);
     let mut home = None;
@@ -103,28 +103,17 @@ fn over_the_work(intent: &mut Intent, approach: PlaneApproach) {
             }
             Step::Cut(cut) => {
                 let span = located.span;
-                let mut over = |axis: usize, place: &Position| {
-                    let targets = (0..count).filter(|i| *i != axis).map(|i| (i, place[i])).collect();
+                // Where the line does not say where it starts, it is at its first place.
+                let unsaid =
+                    matches!(&cut.curve, Curve::Lines(line) if line.points().next() == Some(line.start));
+                if let (Some(axis), Some((start, _))) = (home.take(), cut.curve.ends()) {
+                    let targets = (0..count).filter(|i| *i != axis).map(|i| (i, start[i])).collect();
                     all.push(Located { step: Step::Rapid(targets), span });
-                };
-                match (home.take(), &mut cut.curve) {
-                    (None, _) => {}
-                    (Some(axis), Curve::Lines(line)) => {
-                        let first = line.points().next();
-                        if let Some(first) = first {
-                            over(axis, &first);
-                            line.start = first;
-                        }
-                    }
-                    (Some(axis), curve) => {
-                        if let Some((start, _)) = curve.ends() {
-                            over(axis, &start);
-                            let mut line = Polyline::new(start, count);
-                            line.push(&start);
-                            let curve = Curve::Lines(line);
-                            let down = Cut { feed: cut.feed, role: Role::Approach, curve };
-                            all.push(Located { step: Step::Cut(down), span });
-                        }
+                    if !unsaid {
+                        let mut line = Polyline::new(start, count);
+                        line.push(&start);
+                        let down = Cut { feed: cut.feed, role: Role::Approach, curve: Curve::Lines(line) };
+                        all.push(Located { step: Step::Cut(down), span });
                     }
                 }
             }

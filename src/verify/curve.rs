@@ -22,7 +22,7 @@ use crate::pass::stretch::{counted_length, linear_length};
 use crate::units::{Axes, DEGREES, Kind, MAX_AXES, Position};
 
 /// A block may end a curve from this share of its length on, and up to as much more.
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
 /// What the proof of a curve needs beside it.
 pub(super) struct Asked<'a> {

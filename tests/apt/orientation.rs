@@ -408,12 +408,12 @@ fn a_tool_that_was_changed_is_nowhere_known() {
     let at = blocks.iter().position(|block| *block == "T2").expect("tool 2");
     let made = blocks[at..].windows(2).any(|two| two == ["G0 X10 Y10", "Z2"]);
     assert!(made, "{text}");
-    // Where a cut follows a tool call, the tool goes over its end first and comes down at feed.
+    // Where a cut follows a tool call, the tool goes over its start first and comes down at feed.
     let input = format!("{HEAD}RAPID\nGOTO/10,10,2\nGOTO/10,10,-3\nLOADTL/2\nGOTO/10,10,-8\nFINI\n");
     for (dialect, block) in [
-        ("sinumerik", "G0 X10 Y10\nN200 G1 Z-8 F500\n"),
-        ("heidenhain", "L X+10 Y+10 R0 FMAX\n30 L Z-8 F500\n"),
-        ("mazak", "G0 X10. Y10.\nG1 G43 H2 Z-8. F500.\n"),
+        ("sinumerik", "G0 X10 Y10\nN200 G1 Z-3 F500\nN210 Z-8\n"),
+        ("heidenhain", "L X+10 Y+10 R0 FMAX\n30 L Z-3 F500\n31 L Z-8\n"),
+        ("mazak", "G0 X10. Y10.\nG1 G43 H2 Z-3. F500.\nZ-8.\n"),
     ] {
         let text =
             program("iso", &input, &machine(&format!("extends = \"{dialect}\""))).expect("a program").text;

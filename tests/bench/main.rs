@@ -9,7 +9,7 @@ use splinepost::geom::bezier::Bezier;
 use splinepost::geom::fit;
 use splinepost::geom::logcurve::{Cutter, Hand, Law, LogCurve};
 use splinepost::geom::oddeven::OddEven;
-use splinepost::geom::smooth::{CORNER, Fitting, spline};
+use splinepost::geom::smooth::{CORNER, Fitting, parts};
 use splinepost::machine::Machine;
 use splinepost::simulate::partition;
 use splinepost::simulate::partition::{Cycles, Method, Piece, Weights};
@@ -182,7 +182,7 @@ fn fit(c: &mut Criterion) {
             .collect();
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(count.to_string(), |b| {
-            b.iter(|| spline(black_box(&points), Fitting { tolerance: 0.01, corner: CORNER }).is_some());
+            b.iter(|| parts(black_box(&points), Fitting { tolerance: 0.01, corner: CORNER }).is_some());
         });
     }
     group.finish();

@@ -69,7 +69,7 @@ struct Stated {
     clear: Option<f64>,
     retract: Option<f64>,
     step: Option<f64>,
-    dwell: f64,
+    dwell: Option<f64>,
     feed: Option<Feed>,
 }
 
@@ -79,6 +79,10 @@ impl Reader<'_> {
         let kind = said.first_word().to_ascii_uppercase();
         self.cycle = Some(Cycle::REFUSED);
         let kind = match kind.as_str() {
+            "OFF" | "CLEAR" | "ON" if said.arguments().len() != 1 => {
+                let message = format!("CYCLE/{kind} stands alone");
+                return self.error("arguments", message, said.span);
+            }
             "OFF" | "CLEAR" => {
                 self.cycle = None;
                 return;
@@ -113,6 +117,30 @@ impl Reader<'_> {
         let Some(clear) = stated.clear.map(|c| c * self.scale).filter(|c| 0.0 <= *c && c.is_finite()) else {
             return self.error("cycle-clear", "the cycle states no CLEAR or RAPTO to begin from", said.span);
         };
+        if kind == Kind::Deep && clear == 0.0 {
+            let message =
+                "with a CLEAR of 0 each stroke would start at rapid on the bottom of the one before";
+            return self.error("cycle-clear", message, said.span);
+        }
+        if clear == 0.0 {
+            let message = "with a CLEAR of 0 the tool goes at rapid as far as the point itself";
+            self.push(Diagnostic::warning("cycle-clear", message).at(said.span, ""));
+        }
+        let retract = stated.retract.map(|r| r * self.scale);
+        if retract.is_some_and(|r| r < clear) {
+            let message =
+                format!("RTRCTO is below the {clear} mm from which the cycle begins: it retracts to there");
+            self.push(Diagnostic::warning("cycle-retract", message).at(said.span, ""));
+        }
+        if (kind == Kind::Deep) != stated.step.is_some() {
+            let message = match kind {
+                Kind::Deep => "DEEP drills in steps, and no STEP says how deep",
+                Kind::Drill | Kind::Ream | Kind::Refused => {
+                    "STEP is of DEEP; this cycle drills in one stroke"
+                }
+            };
+            return self.error("cycle-step", message, said.span);
+        }
         let step = stated.step.map_or(depth, |step| step * self.scale);
         if kind == Kind::Deep && !(0.0 < step && depth / step <= MAX_PECKS) {
             let message = format!("STEP must be greater than zero and make at most {MAX_PECKS} pecks");
@@ -122,9 +150,9 @@ impl Reader<'_> {
             kind,
             depth,
             clear,
-            retract: stated.retract.map_or(clear, |r| (r * self.scale).max(clear)),
+            retract: retract.map_or(clear, |r| r.max(clear)),
             step,
-            dwell: stated.dwell,
+            dwell: stated.dwell.unwrap_or(0.0),
             feed: stated.feed,
             line: said.record.line,
         });
@@ -142,10 +170,19 @@ impl Reader<'_> {
         let mut order = order.into_iter();
         for placed in said.arguments().iter().skip(1) {
             match placed.argument {
-                Argument::Word(next) => match next.to_ascii_uppercase().as_str() {
-                    "AUTO" | "MANUAL" | "ON" => word = None,
-                    next => word = Some(next.to_owned()),
-                },
+                Argument::Word(next) => {
+                    let next = next.to_ascii_uppercase();
+                    match word.take() {
+                        Some(before) if before == "RTRCTO" && (next == "AUTO" || next == "MANUAL") => {}
+                        Some(before) => {
+                            let message = format!("{before} of a cycle has no number");
+                            self.error("arguments", message, said.place(placed));
+                            return None;
+                        }
+                        None if next == "MANUAL" => {}
+                        None => word = Some(next),
+                    }
+                }
                 Argument::Number(x) => {
                     let Some(name) = word.take().or_else(|| order.next()) else {
                         let place = said.place(placed);
@@ -156,20 +193,26 @@ impl Reader<'_> {
                         );
                         return None;
                     };
-                    match name.as_str() {
-                        "DEPTH" | "FEDTO" => stated.depth = Some(x),
-                        "CLEAR" | "RAPTO" => stated.clear = Some(x),
-                        "RTRCTO" => stated.retract = Some(x),
-                        "STEP" | "INCR" => stated.step = Some(x),
-                        "DWELL" => stated.dwell = x.max(0.0),
+                    let twice = match name.as_str() {
+                        "DEPTH" | "FEDTO" => stated.depth.replace(x).is_some(),
+                        "CLEAR" | "RAPTO" => stated.clear.replace(x).is_some(),
+                        "RTRCTO" => stated.retract.replace(x).is_some(),
+                        "STEP" | "INCR" => stated.step.replace(x).is_some(),
+                        "DWELL" if 0.0 <= x && x.is_finite() => stated.dwell.replace(x).is_some(),
                         "IPM" | "MMPM" | "MMPR" | "IPR" | "FPM" => {
-                            stated.feed = Some(self.feed_in(&name, x, said.place(placed))?);
+                            let feed = self.feed_in(&name, x, said.place(placed))?;
+                            stated.feed.replace(feed).is_some()
                         }
                         _ => {
-                            let message = format!("{name} of a cycle is not compiled");
+                            let message = format!("{name} {x} of a cycle is not compiled");
                             self.refuse("cycle", message, said.place(placed));
                             return None;
                         }
+                    };
+                    if twice {
+                        let message = format!("the cycle states {name}, or what means the same, twice");
+                        self.error("arguments", message, said.place(placed));
+                        return None;
                     }
                 }
                 Argument::Empty => {

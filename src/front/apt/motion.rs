@@ -165,7 +165,7 @@ impl Reader<'_> {
 
     /// `MULTAX[/ON|OFF]`: whether points carry an axis; each point shows it anyway.
     pub(super) fn multax(&mut self, said: &Said<'_>) {
-        if !said.arguments().is_empty() && !said.has("ON") && !said.has("OFF") {
+        if !said.is_bare() && (said.arguments().len() != 1 || (!said.has("ON") && !said.has("OFF"))) {
             self.error("arguments", "MULTAX is ON or OFF", said.span);
         }
         self.axis_stale |= said.has("OFF");
@@ -242,6 +242,11 @@ impl Reader<'_> {
 
     /// `GODLTA/dx,dy,dz | GODLTA/d`, the latter along the tool axis.
     pub(super) fn godlta(&mut self, said: &Said<'_>) {
+        if self.cycle.is_some() {
+            let message =
+                "an increment in a cycle: whether it counts from the hole or from above it no page says";
+            return self.refuse("cycle-increment", message, said.span);
+        }
         let Some(from) = self.program.position else {
             return self.error("start-unknown", "an increment from a place that is not known", said.span);
         };

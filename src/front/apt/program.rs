@@ -177,7 +177,7 @@ impl Builder {
 
     /// Starts the spindle, clockwise, rev/min.
     pub(super) fn spindle(&mut self, rpm: f64, span: Span) {
-        self.running.spindle(Spindle::Turns);
+        self.running.spindle(Spindle::Turns(rpm));
         self.step(Step::Spindle(rpm), span);
     }
 
@@ -211,6 +211,7 @@ impl Builder {
             targets.extend(directed(&self.axis));
         }
         self.step(Step::Rapid(targets), span);
+        self.running.rapid(span);
         self.before = self.position;
         self.position = Some(*to);
         self.told = true;
@@ -273,6 +274,29 @@ impl Builder {
         self.stood = self.axis;
     }
 
+    /// Where positions count in another frame from here on, the operator sets it: the tool is brought away, the program stops, and
+    /// starts again with the call of its tool. Where the tool is in the new frame nobody knows.
+    pub(super) fn reframed(&mut self, span: Span) {
+        if let Some(tool) = self.running.called() {
+            self.step(Step::Home(Z), span);
+            self.step(Step::Auxiliary(Auxiliary::Stop), span);
+            self.step(Step::Tool(tool), span);
+            for step in self.running.again() {
+                self.step(step, span);
+            }
+        } else {
+            self.step(Step::Auxiliary(Auxiliary::Stop), span);
+        }
+        self.running.reframed();
+        self.told = false;
+        (self.position, self.before) = (None, None);
+    }
+
+    /// What there is to say of spindle, coolant and tool where they cut.
+    pub(super) fn told(&mut self) -> Diagnostics {
+        std::mem::take(&mut self.running.diagnostics)
+    }
+
     /// What was asked, in all.
     ///
     /// # Errors
@@ -282,10 +306,9 @@ impl Builder {
         name: String,
         name_span: Option<Span>,
         whole: Span,
-        mut warnings: Diagnostics,
+        warnings: Diagnostics,
     ) -> Result<Intent, Diagnostics> {
         self.flush();
-        warnings.extend(std::mem::take(&mut self.running.warnings));
         if !self.has_moved() {
             let message = "the file has no move";
             return Err(Diagnostic::error("moves-missing", message).at(whole, "").into());

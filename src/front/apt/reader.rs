@@ -7,12 +7,12 @@ use super::program::Builder;
 use super::records::{Kind, MAX_RECORD, Record, Records};
 use super::remarks::Matrix;
 use super::splines::Spline;
-use super::statement::{self, Placed, Statement};
+use super::statement::{self, Argument, Placed, Statement};
 use super::systems::System;
 use super::technology::Feed;
 use super::words::{Meaning, Words};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::ir::Intent;
+use crate::ir::{Auxiliary, Intent};
 use crate::source::{SourceId, Span};
 use std::collections::BTreeMap;
 
@@ -112,6 +112,11 @@ impl<'r> Said<'r> {
             .any(|known| known.eq_ignore_ascii_case(word))
     }
 
+    /// Whether nothing stands behind the major word; `RAPID /` of Creo has an empty argument.
+    pub(super) fn is_bare(&self) -> bool {
+        self.arguments().iter().all(|placed| placed.argument == Argument::Empty)
+    }
+
     /// The first argument, where it is a word.
     pub(super) fn first_word(&self) -> &'r str {
         self.arguments().first().and_then(|placed| placed.argument.word()).unwrap_or_default()
@@ -209,6 +214,7 @@ impl<'s> Reader<'s> {
                 format!("{} more warnings of this file are not shown", self.warnings - MAX_WARNINGS);
             self.diagnostics.push(Diagnostic::warning("warnings-many", message));
         }
+        self.diagnostics.extend(self.program.told());
         let warnings = self.diagnostics.into_result()?;
         let (name, name_span) = match self.name {
             Some((name, span)) => (name, Some(span)),
@@ -244,7 +250,9 @@ impl<'s> Reader<'s> {
 
     /// Says that a word is not understood: an error, or a warning where that was asked for.
     pub(super) fn unknown(&mut self, message: String, span: Span, hint: Option<String>) {
-        let mut diagnostic = if self.lenient {
+        // A word that is nearly another one may be that one misspelt, and then it would be missed.
+        let lenient = self.lenient && hint.is_none();
+        let mut diagnostic = if lenient {
             Diagnostic::warning("word-unknown", format!("{message}; it is left out"))
         } else {
             Diagnostic::error("word-unknown", message)
@@ -256,8 +264,16 @@ impl<'s> Reader<'s> {
         if !self.lenient {
             diagnostic =
                 diagnostic.hint("--words gives it a meaning; --lenient leaves it out with a warning");
+        } else if !lenient {
+            diagnostic = diagnostic.hint("--words gives it a meaning, such as \"left-out\"");
         }
         self.push(diagnostic);
+    }
+
+    /// Says that an argument of a word that is understood is not: no table gives it a meaning, and without it the word would say
+    /// something else.
+    pub(super) fn argument(&mut self, argument: &str, word: &str, span: Span) {
+        self.error("word-unknown", format!("`{argument}` is not understood in {word}"), span);
     }
 
     /// Takes a word as saying nothing that a program needs.
@@ -270,8 +286,7 @@ impl<'s> Reader<'s> {
     fn code(&mut self, record: &Record<'_>) {
         let span = record.span(self.source);
         if self.ended {
-            self.leave_out("TEXT AFTER FINI", span);
-            return;
+            return self.behind_the_end(record, span);
         }
         if super::records::is_free_text(&record.text) {
             return self.free_text(record, span);
@@ -298,6 +313,20 @@ impl<'s> Reader<'s> {
                 self.unknown(format!("`{word}` is not understood"), said.word_place(), hint);
             }
         }
+    }
+
+    /// Behind FINI text says nothing, but moves are another program, and left out they would be missed.
+    fn behind_the_end(&mut self, record: &Record<'_>, span: Span) {
+        let word = statement::parse(&record.text).ok().and_then(|said| self.words.meaning(said.major));
+        if !word.is_some_and(Meaning::moves) {
+            return self.leave_out("TEXT AFTER FINI", span);
+        }
+        self.hopeless = true;
+        self.push(
+            Diagnostic::error("moves-after-end", "a move stands behind the end of the program")
+                .at(span, "")
+                .hint("a file is one program: take its parts apart, or take out the FINI between them"),
+        );
     }
 
     /// A statement whose text goes to the end of its line.
@@ -384,8 +413,8 @@ impl<'s> Reader<'s> {
             Meaning::End => self.ended = true,
             Meaning::Units => self.units(said),
             Meaning::Mode => self.mode(said),
-            Meaning::Stop => self.program.auxiliary(crate::ir::Auxiliary::Stop, said.span),
-            Meaning::Opstop => self.program.auxiliary(crate::ir::Auxiliary::OptionalStop, said.span),
+            Meaning::Stop if said.is_bare() => self.program.auxiliary(Auxiliary::Stop, said.span),
+            Meaning::Opstop if said.is_bare() => self.program.auxiliary(Auxiliary::OptionalStop, said.span),
             Meaning::Cutter => self.cutter(said),
             Meaning::Tldata => self.tldata(said),
             Meaning::Toolno => self.toolno(said),
@@ -402,7 +431,10 @@ impl<'s> Reader<'s> {
             }
             Meaning::Multax => self.multax(said),
             Meaning::Tlaxis => self.tlaxis(said),
-            Meaning::Rapid => self.rapid = true,
+            Meaning::Rapid if said.is_bare() => self.rapid = true,
+            Meaning::Stop | Meaning::Opstop | Meaning::Rapid => {
+                self.error("arguments", format!("{word} takes no argument"), said.span);
+            }
             Meaning::From => self.from(said),
             Meaning::Gohome => self.gohome(said),
             Meaning::Godlta => self.godlta(said),

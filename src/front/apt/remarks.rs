@@ -3,7 +3,6 @@
 use super::reader::Reader;
 use super::statement::number;
 use crate::diagnostic::Diagnostic;
-use crate::ir::Auxiliary;
 use crate::source::Span;
 
 /// Where a matrix of CATIA stands: after `$$*CATIA0` come a name and three rows.
@@ -153,11 +152,12 @@ impl Reader<'_> {
         self.program.comment(&text, span);
         self.frame = Some(text);
         if self.program.has_moved() {
-            self.program.auxiliary(Auxiliary::Stop, span);
+            self.program.reframed(span);
             self.diagnostics.push(
                 Diagnostic::warning("frame-changes", "the frame of the positions changes here")
                     .at(span, "")
-                    .hint("the program stops there, so that the work offset can be set; no position is transformed"),
+                    .hint("the tool is brought away and the program stops there, so that the work offset can be set; no position is transformed")
+                    .hint("where the control takes a new offset with its word only, state that under [program] stop: [\"M0\", \"G54\"]"),
             );
         }
     }

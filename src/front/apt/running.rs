@@ -1,21 +1,24 @@
-//! Whether the spindle turns and the coolant flows where a tool cuts. A tool change stops both on most machines, and what was
-//! on before it holds for the tool before it: a file that does not say them again is written as it stands, with a warning.
+//! Whether a tool is in the spindle, the spindle turns and the coolant flows where something is cut.
+//!
+//! A tool change stops spindle and coolant on most machines, and what was on before it holds for the tool before it: a file that
+//! does not say them again is written as it stands, with a warning.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::ir::{Curve, Step};
 use crate::source::Span;
 
 /// What became of the spindle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Spindle {
     /// Nothing was said of it.
     #[default]
     Unsaid,
-    /// It was started.
-    Turns,
+    /// It was started, rev/min.
+    Turns(f64),
     /// It was stopped.
     Stopped,
     /// A tool was called.
-    Called(u32),
+    Called,
 }
 
 /// What became of the coolant.
@@ -27,18 +30,29 @@ pub(super) enum Coolant {
     /// It was started.
     Flows,
     /// It was on, and a tool was called.
-    Called(u32),
+    Called,
+}
+
+/// What is new since the last move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum New {
+    Tool,
+    Frame,
 }
 
 /// What runs, and what is to be said of it.
 #[derive(Debug, Default)]
 pub(super) struct Running {
+    tool: Option<u32>,
     spindle: Spindle,
     coolant: Coolant,
     /// Whether it was told that the spindle stands.
     told: bool,
-    /// What there is to know.
-    pub(super) warnings: Diagnostics,
+    new: Option<New>,
+    /// Whether anything has moved.
+    begun: bool,
+    /// What there is to say.
+    pub(super) diagnostics: Diagnostics,
 }
 
 impl Running {
@@ -55,36 +69,104 @@ impl Running {
 
     /// A tool is called.
     pub(super) fn tool(&mut self, number: u32) {
-        self.spindle(Spindle::Called(number));
+        self.tool = Some(number);
+        self.new = Some(New::Tool);
+        self.spindle(Spindle::Called);
         if self.coolant != Coolant::Off {
-            self.coolant = Coolant::Called(number);
+            self.coolant = Coolant::Called;
         }
     }
 
-    /// Cuts, at `span`: warns once of a spindle that stands, and of coolant that another tool had.
-    pub(super) fn cuts(&mut self, span: Span) {
-        if self.spindle != Spindle::Turns && !self.told {
-            self.told = true;
-            let message = match self.spindle {
-                Spindle::Called(tool) => {
-                    format!("tool {tool} cuts here, and nothing started the spindle since it was called")
-                }
-                Spindle::Stopped => "the spindle was stopped before this cut".to_owned(),
-                Spindle::Turns | Spindle::Unsaid => "nothing started the spindle before this cut".to_owned(),
-            };
-            self.warnings.push(
-                Diagnostic::warning("spindle-missing", message)
+    /// The tool that was called last.
+    pub(super) fn called(&self) -> Option<u32> {
+        self.tool
+    }
+
+    /// What has to be said again behind a second call of the same tool.
+    pub(super) fn again(&self) -> Vec<Step<f64, Curve>> {
+        let spindle = match self.spindle {
+            Spindle::Turns(rpm) => Some(Step::Spindle(rpm)),
+            Spindle::Unsaid | Spindle::Stopped | Spindle::Called => None,
+        };
+        spindle.into_iter().chain((self.coolant == Coolant::Flows).then_some(Step::Coolant)).collect()
+    }
+
+    /// Positions count in another frame from here on.
+    pub(super) fn reframed(&mut self) {
+        self.new = Some(New::Frame);
+    }
+
+    /// Goes somewhere at rapid.
+    pub(super) fn rapid(&mut self, span: Span) {
+        self.begins(span);
+        self.new = None;
+    }
+
+    /// The first move of all: without a tool no length holds, and nothing goes home.
+    fn begins(&mut self, span: Span) {
+        if !self.begun && self.tool.is_none() {
+            let message = "the file moves and calls no tool before: the length that the control has holds, and Z goes home nowhere";
+            self.diagnostics.push(
+                Diagnostic::warning("tool-missing", message)
                     .at(span, "")
-                    .hint("SPINDL behind the tool call starts it; a tool change stops the spindle"),
+                    .hint("LOADTL calls one; see that the way to the first place is clear"),
             );
         }
-        if let Coolant::Called(tool) = self.coolant {
+        self.begun = true;
+    }
+
+    /// Cuts, at `span`.
+    pub(super) fn cuts(&mut self, span: Span) {
+        self.begins(span);
+        let new = self.new.take();
+        if self.tool == Some(0) {
+            self.tool = None;
+            let message = "tool 0 is an empty spindle, and cuts here";
+            self.diagnostics.push(Diagnostic::error("tool-zero", message).at(span, ""));
+        } else if let Some(new) = new {
+            self.diagnostics.push(
+                first_cut(new, self.tool).at(span, "").hint("RAPID before it, to a place above the work"),
+            );
+        }
+        let tool = self.tool.map_or(String::new(), |tool| format!("tool {tool} cuts here, and "));
+        let message = match self.spindle {
+            Spindle::Turns(_) => None,
+            Spindle::Unsaid => Some(format!("{tool}nothing started the spindle before")),
+            Spindle::Called => Some(format!("{tool}nothing started the spindle since it was called")),
+            Spindle::Stopped => Some(format!("{tool}the spindle was stopped before")),
+        };
+        if let Some(message) = message.filter(|_| !self.told) {
+            self.told = true;
+            self.diagnostics.push(
+                Diagnostic::warning("spindle-missing", message)
+                    .at(span, "")
+                    .hint("SPINDL behind the tool call starts it; a tool change stops it"),
+            );
+        }
+        if self.coolant == Coolant::Called {
             self.coolant = Coolant::Off;
-            let message =
-                format!("tool {tool} cuts here without coolant, which was on before the tool was called");
-            self.warnings.push(Diagnostic::warning("coolant-missing", message).at(span, "").hint(
+            let message = format!("{tool}the coolant, on before it was called, is not started again");
+            self.diagnostics.push(Diagnostic::warning("coolant-missing", message).at(span, "").hint(
                 "COOLNT/ON behind the tool call starts it; COOLNT/OFF before says that it is to be off",
             ));
+        }
+    }
+}
+
+/// What is said of a first move that cuts.
+fn first_cut(new: New, tool: Option<u32>) -> Diagnostic {
+    match new {
+        New::Tool => {
+            let tool = tool.unwrap_or_default();
+            let message = format!(
+                "tool {tool} begins with a cut: over where that starts it comes down from its home, at its feed"
+            );
+            Diagnostic::warning("cut-first", message)
+        }
+        New::Frame => {
+            let message =
+                "the first move in another frame cuts, and where the tool is in that frame nobody knows";
+            Diagnostic::error("frame-cut", message)
         }
     }
 }

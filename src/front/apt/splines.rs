@@ -19,6 +19,7 @@ use super::directions::Second;
 use super::program::joined;
 use super::reader::{Reader, Said};
 use super::statement::{Argument, Placed};
+use super::technology::Feed;
 use super::words::Meaning;
 use crate::diagnostic::Diagnostic;
 use crate::geom::nurbs::Nurbs;
@@ -164,6 +165,11 @@ impl Reader<'_> {
         }
         if !(0.0 < feed && feed.is_finite()) {
             return self.error("feed-range", "F must be greater than zero", said.span);
+        }
+        if matches!(self.feed, Some(Feed::PerRevolution(_))) {
+            let message =
+                "whether F counts a minute or a revolution where FEDRAT counts revolutions is not known";
+            return self.refuse("nurbs-revolutions", message, said.span);
         }
         if self.scale != 1.0 {
             let message = "whether F counts inches in a file of inches is not known";

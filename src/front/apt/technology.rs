@@ -76,8 +76,10 @@ impl Reader<'_> {
 
     /// `MODE/MILL|TURN`
     pub(super) fn mode(&mut self, said: &Said<'_>) {
-        if said.has("TURN") {
-            self.turned(said.span);
+        match said.arguments() {
+            [_] if said.has("MILL") => {}
+            _ if said.has("TURN") => self.turned(said.span),
+            _ => self.error("arguments", "MODE is MILL: no other mode is compiled", said.span),
         }
     }
 
@@ -188,9 +190,15 @@ impl Reader<'_> {
     /// `SPINDL/ { n | RPM|SFM|SMM | CLW|CCLW | MAXRPM,n | RANGE,n } | ON | OFF | ORIENT | MAIN`
     pub(super) fn spindl(&mut self, said: &Said<'_>) {
         let mut speed = None;
+        if said.has("OFF") && said.arguments().len() != 1 {
+            return self.error("arguments", "SPINDL/OFF stands alone", said.span);
+        }
         let mut arguments = said.arguments().iter();
         while let Some(placed) = arguments.next() {
             match placed.argument {
+                Argument::Number(_) if speed.is_some() => {
+                    return self.error("arguments", "SPINDL states two speeds", said.place(placed));
+                }
                 Argument::Number(n) => speed = Some(n),
                 Argument::Word(word) => match word.to_ascii_uppercase().as_str() {
                     "RPM" | "CLW" | "ON" | "MAIN" => {}
@@ -213,7 +221,7 @@ impl Reader<'_> {
                     }
                     _ => {
                         let place = said.place(placed);
-                        self.unknown(format!("`{word}` is not understood in SPINDL"), place, None);
+                        return self.argument(word, "SPINDL", place);
                     }
                 },
                 Argument::Empty => {}
@@ -241,10 +249,16 @@ impl Reader<'_> {
         let (mut value, mut unit) = (None, None);
         for placed in said.arguments() {
             match placed.argument {
+                Argument::Number(_) if value.is_some() => {
+                    return self.error("arguments", "FEDRAT states two feeds", said.place(placed));
+                }
                 Argument::Number(n) => value = Some(n),
                 Argument::Word(word) => {
                     let word = word.to_ascii_uppercase();
                     match feed_unit(&word) {
+                        Some(_) if unit.is_some() => {
+                            return self.error("arguments", "FEDRAT states two units", said.place(placed));
+                        }
                         Some(known) => unit = Some(known),
                         None if word == "INVERS" && said.has("OFF") => return,
                         None if word == "INVERS" => {
@@ -253,7 +267,7 @@ impl Reader<'_> {
                         }
                         None => {
                             let place = said.place(placed);
-                            self.unknown(format!("`{word}` is not understood in FEDRAT"), place, None);
+                            return self.argument(&word, "FEDRAT", place);
                         }
                     }
                 }
@@ -269,6 +283,14 @@ impl Reader<'_> {
         let Some(value) = value else {
             return self.error("feed-missing", "FEDRAT states no feed", said.span);
         };
+        if unit.is_none() && matches!(self.feed, Some(Feed::PerRevolution(_))) {
+            let message = "this feed states no unit, and the one before it was a feed a revolution";
+            self.push(
+                Diagnostic::error("feed-unit", message)
+                    .at(said.span, "")
+                    .hint("MMPM, MMPR, IPM or IPR says what it counts"),
+            );
+        }
         self.feed = self.feed_of(value, unit, said.span).or(self.feed);
     }
 
@@ -318,6 +340,12 @@ impl Reader<'_> {
     /// `COOLNT/ON|OFF|FLOOD|MIST|TAP|THRU[,LOW|MEDIUM|HIGH]`
     pub(super) fn coolnt(&mut self, said: &Said<'_>) {
         let word = said.first_word().to_ascii_uppercase();
+        for placed in said.arguments().iter().skip(1) {
+            let pressure = placed.argument.word().map(str::to_ascii_uppercase);
+            if !matches!(pressure.as_deref(), Some("LOW" | "MEDIUM" | "HIGH")) {
+                return self.error("arguments", "COOLNT states one kind of coolant", said.place(placed));
+            }
+        }
         match word.as_str() {
             "ON" | "FLOOD" => self.program.coolant(said.span),
             "OFF" => self.program.auxiliary(Auxiliary::CoolantStop, said.span),
@@ -326,8 +354,7 @@ impl Reader<'_> {
                 self.refuse("coolant", message, said.span);
             }
             _ => {
-                let message = format!("`{}` is not understood", said.record.text);
-                self.unknown(message, said.span, None);
+                self.argument(&word, "COOLNT", said.span);
             }
         }
     }
@@ -337,6 +364,9 @@ impl Reader<'_> {
         if said.has("REV") {
             let message = "REV: a dwell in revolutions is not compiled";
             return self.refuse("dwell-revolutions", message, said.span);
+        }
+        if said.arguments().len() != 1 {
+            return self.error("arguments", "DELAY takes seconds and nothing else", said.span);
         }
         match said.first_number() {
             Some(seconds) if 0.0 < seconds && seconds.is_finite() => {

@@ -117,6 +117,27 @@ pub(super) enum Meaning {
     Cycle,
 }
 
+impl Meaning {
+    /// Whether the tool moves, or is another one, where this is said.
+    pub(super) fn moves(self) -> bool {
+        matches!(
+            self,
+            Meaning::Loadtl
+                | Meaning::Load
+                | Meaning::Gohome
+                | Meaning::Godlta
+                | Meaning::Goto
+                | Meaning::Circle
+                | Meaning::Movarc
+                | Meaning::Tlon
+                | Meaning::NurbsSiemens
+                | Meaning::Nurbs
+                | Meaning::Movnrb
+                | Meaning::Cycle
+        )
+    }
+}
+
 /// The meanings by the names that tables use.
 const MEANINGS: &[(&str, Meaning)] = &[
     ("comment", Meaning::Comment),

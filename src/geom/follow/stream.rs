@@ -29,7 +29,7 @@ pub struct Meeting {
     pub at: [usize; 2],
     /// From where to where of its piece each part goes.
     pub part: [[f64; 2]; 2],
-    /// How long the first of them is, mm.
+    /// How long the longer of them is, mm.
     pub length: f64,
     /// An upper bound on the distance, mm.
     pub distance: f64,
@@ -306,7 +306,8 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Stream<P, C> {
             [self.p.share(from(&self.p.stand), 1.0), [1.0, 1.0]]
         };
         let found = self.bound(&p, &c);
-        let length = if p_waits { 0.0 } else { self.p.stand.as_ref().map_or(0.0, Stand::rest) };
+        let moves = if p_waits { &self.c.stand } else { &self.p.stand };
+        let length = moves.as_ref().map_or(0.0, Stand::rest);
         let mut meeting = self.meeting(part, length, found);
         // Who waits stands at the end of the piece before.
         if p_waits {
@@ -349,7 +350,8 @@ impl<P: Iterator<Item = Bezier>, C: Iterator<Item = Bezier>> Iterator for Stream
         let (to_p, to_c) = together(own, other, self.rule.tolerance);
         let (p, c) = (own.part(to_p), other.part(to_c));
         let part = [self.p.share(own.t, to_p), self.c.share(other.t, to_c)];
-        let length = own.length(to_p) - own.length(own.t);
+        let run = |stand: &Stand, to: f64| stand.length(to) - stand.length(stand.t);
+        let length = run(own, to_p).max(run(other, to_c));
         let found = self.bound(&p, &c);
         let meeting = self.meeting(part, length, found);
         if self.parted(&meeting)

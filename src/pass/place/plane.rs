@@ -120,17 +120,17 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diag
     if let Err(note) = turns_at_rapid(&intent.program.steps, first, near(machine)) {
         return Ok(note);
     }
-    let retracts = machine.with_axes(&axes)?.retracts(Z);
+    let own = machine.with_axes(&axes)?;
     let mut walk = Walk {
         first,
-        machine,
+        machine: &own,
         near: near(machine),
-        retracts,
         all: Vec::new(),
         plane: None,
         at: None,
         called: false,
         told: false,
+        tilted: false,
         error: Bound::ZERO,
     };
     let steps = &intent.program.steps;
@@ -142,6 +142,7 @@ pub(super) fn tilt(intent: &mut Intent, machine: &Machine) -> Result<Option<Diag
     }
     if let Some(last) = steps.last() {
         walk.leave(last.span);
+        walk.straighten(last.span);
     }
     let (all, error) = (walk.all, walk.error);
     intent.program.steps = all;
@@ -220,8 +221,6 @@ struct Walk<'m> {
     machine: &'m Machine,
     /// How far directions of one plane may be apart, radians.
     near: f64,
-    /// Whether Z has a home to retract to.
-    retracts: bool,
     all: All,
     plane: Option<Tilted>,
     /// Where the input takes the tip to be, in the work's own coordinates.
@@ -229,6 +228,8 @@ struct Walk<'m> {
     called: bool,
     /// Whether no section began since the last move: its first rapid names every axis.
     told: bool,
+    /// Whether the last plane was not upright.
+    tilted: bool,
     error: Bound,
 }
 
@@ -317,7 +318,7 @@ impl Walk<'_> {
             let message = "a plane is to be tilted, and no tool is called: its length is not known";
             return Err(Diagnostic::error("tool-missing", message).at(span, "").into());
         }
-        if !self.retracts {
+        if !self.machine.retracts(Z) {
             let message = "the tool turns here, and the machine file states no place in Z where it is clear";
             return Err(Diagnostic::refusal("home-missing", message)
                 .at(span, "")
@@ -335,6 +336,7 @@ impl Walk<'_> {
         let digits = self.machine.digits.rotary;
         let angles = Rotation::level(asked).angles(order).map(|angle| rounded(angle, digits));
         self.push(Step::Auxiliary(Auxiliary::Plane(angles)), span);
+        self.tilted = angles != [0.0; PLACE];
         let rotation = Rotation::of(order, angles);
         self.plane = Some(Tilted { asked, rotation, top: f64::NEG_INFINITY });
         Ok(())
@@ -352,6 +354,14 @@ impl Walk<'_> {
         }
         self.push(Step::Home(Z), span);
         self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+    }
+
+    /// Turns the tool upright at the end, with Z at home: the next program may know nothing of planes.
+    fn straighten(&mut self, span: Span) {
+        if self.tilted {
+            self.push(Step::Auxiliary(Auxiliary::Plane([0.0; PLACE])), span);
+            self.push(Step::Auxiliary(Auxiliary::PlaneEnd), span);
+        }
     }
 }
 
