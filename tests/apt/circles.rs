@@ -211,9 +211,11 @@ fn what_stands_between_a_circle_and_its_end() {
                     let (sweeps, lines) = arcs(&intent);
                     assert!((sweeps[0] - 90.0).abs() < 1e-6 && lines == 1, "{body}: {sweeps:?}");
                 }
-                // GODLTA is the point of what it broke off, so that the TLON behind it is told too; and a frame must
-                // not begin with a cut.
-                Some("-") if ["GODLTA", "MSYS", "$$->"].iter().any(|word| statement.starts_with(word)) => {
+                // GODLTA is the point of what it broke off, so that the TLON behind it is told too; a frame must
+                // not begin with a cut, and nothing moves behind FINI.
+                Some("-")
+                    if ["GODLTA", "MSYS", "$$->", "FINI"].iter().any(|word| statement.starts_with(word)) =>
+                {
                     assert_eq!(errors("creo", &body).first(), Some(&missing), "{body}");
                 }
                 Some("-") => assert_eq!(errors("creo", &body), [missing], "{body}"),
