@@ -5,6 +5,7 @@
 //! | `golden` | `fixtures/apt/<case>/`: an input and every machine's program, side by side, as bytes |
 //! | `statements` | every statement of the language: read, warned or refused |
 //! | `arcs` | arcs and helices of every plane, evaluated from the text; damaged ones |
+//! | `circles` | what stands behind a circle, between it and its end, and beside a start tangent |
 //! | `meaning` | arcs, cycles, feeds and units by their closed forms |
 //! | `orientation` | five axes: tip and direction, second curves, damage |
 //! | `planes` | 3+2 axes: tilted planes, counted back from the text; damage |
@@ -14,6 +15,7 @@
 
 mod arcs;
 mod bad;
+mod circles;
 mod corpus;
 mod golden;
 mod meaning;

@@ -1,28 +1,31 @@
-//! Arcs in all their spellings: `CIRCLE` with six, seven and eleven numbers, `MOVARC`, `INDIRV` with `TLON`.
+//! Arcs by their axis, `CIRCLE` with six, seven and eleven numbers and `MOVARC`, and what all arcs have in common.
 //!
 //! Which way round a circle goes belongs to the system: `CIRCLE/…,0,0,1` is counter-clockwise in Creo and SolidWorks CAM
 //! and clockwise in NX. Straight lines that meet arcs without a corner know better than any table, so each arc between
 //! such neighbours votes, and where most votes of a file contradict its system a warning says so.
 
 use super::motion::Pending;
+use super::points::{Reading, Ring};
 use super::reader::{Reader, Said};
-use super::statement::{Placed, Statement};
-use super::words::Hand;
+use super::words::{Hand, Meaning};
 use crate::diagnostic::Diagnostic;
-use crate::geom::arc::{Arc, Frame, Plane, Sense};
+use crate::geom::arc::{Arc, Frame, Sense};
 use crate::source::Span;
 
 /// Below this an arc's start, end, centre and radius are one circle, mm: the last place of three decimals and rounding.
 const MISFIT_WARNED: f64 = 0.002;
 
 /// Above this they are none, mm: what controls accept.
-const MISFIT_REFUSED: f64 = 0.01;
+pub(super) const MISFIT_REFUSED: f64 = 0.01;
 
 /// A chord shorter than this is that of a full circle whose end was rounded, mm.
-const FULL_CHORD: f64 = 1.0e-5;
+pub(super) const FULL_CHORD: f64 = 1.0e-5;
 
 /// How far an axis may be from X, Y or Z: as far as six decimals say nothing.
-const AXIS_SLACK: f64 = 1.0e-6;
+pub(super) const AXIS_SLACK: f64 = 1.0e-6;
+
+/// How far the end of a stated sweep may be from that of its arc, beside what both ends of it are off their circle, mm.
+const SWEEP_SLACK: f64 = 0.01;
 
 /// cos of the corner below which a line and an arc run into each other.
 const TANGENT: f64 = 0.99;
@@ -31,15 +34,19 @@ const TANGENT: f64 = 0.99;
 #[derive(Clone, Debug)]
 pub(super) struct Circle {
     /// mm.
-    center: [f64; 3],
-    frame: Frame,
-    sense: Sense,
+    pub(super) center: [f64; 3],
+    pub(super) frame: Frame,
+    pub(super) sense: Sense,
     /// The radius stated, mm.
-    radius: Option<f64>,
+    pub(super) radius: Option<f64>,
     /// The sweep stated, radians, where it is.
-    sweep: Option<f64>,
+    pub(super) sweep: Option<f64>,
     /// Whether its sense follows from an axis, so that neighbours may vote on it.
-    by_axis: bool,
+    pub(super) by_axis: bool,
+    /// The start tangent stated, where it is.
+    pub(super) tangent: Option<[f64; 3]>,
+    /// Whether it ends where it meets a line a second time.
+    pub(super) second: bool,
     pub(super) span: Span,
 }
 
@@ -49,6 +56,8 @@ pub(super) struct Left {
     tangent: [f64; 2],
     frame: Frame,
     at: [f64; 3],
+    /// Its circle, where points behind it may be of the arc.
+    pub(super) ring: Option<(Ring, Reading)>,
 }
 
 /// How many arcs go the way that their neighbours say, and how many do not.
@@ -57,170 +66,219 @@ pub(super) struct Votes {
     agree: usize,
     contradict: usize,
     first: Option<Span>,
+    /// Lines that end on the circle of the arc before them: how many, and the first.
+    pub(super) lines: Option<(usize, Span)>,
+}
+
+/// Whether a vector is a direction, which files write with length 1.
+pub(super) fn is_unit(vector: [f64; 3]) -> bool {
+    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    0.5 < length && length < 2.0
 }
 
 /// The frame of the plane that an axis is square to, and whether its w points along it.
-fn frame_about(axis: [f64; 3]) -> Option<(Frame, bool)> {
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if !(0.5 < length && length < 2.0) {
-        return None;
-    }
-    Frame::about(axis, AXIS_SLACK)
+pub(super) fn frame_about(axis: [f64; 3]) -> Option<(Frame, bool)> {
+    Some(axis).filter(|axis| is_unit(*axis)).and_then(|axis| Frame::about(axis, AXIS_SLACK))
 }
 
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-impl Reader<'_> {
-    /// The circle of a centre and an axis; none where that is no direction.
-    fn circle_of(&mut self, center: [f64; 3], axis: [f64; 3], hand: Hand, said: &Said<'_>) -> Option<Circle> {
-        let Some((frame, along)) = frame_about(axis) else {
-            self.error("arc-plane", "the axis of this arc is no direction", said.span);
-            return None;
-        };
+impl Circle {
+    /// Of `cx,cy,cz,i,j,k[,r]` in units of `scale` mm; none where the axis is no direction.
+    pub(super) fn from_numbers(numbers: &[f64], hand: Hand, scale: f64, span: Span) -> Option<Circle> {
+        let &[cx, cy, cz, i, j, k, ref others @ ..] = numbers else { return None };
+        let (frame, along) = frame_about([i, j, k])?;
         let sense = match (along, hand) {
             (true, Hand::Right) | (false, Hand::Left) => Sense::CounterClockwise,
             (true, Hand::Left) | (false, Hand::Right) => Sense::Clockwise,
         };
-        let center = center.map(|x| x * self.scale);
-        Some(Circle { center, frame, sense, radius: None, sweep: None, by_axis: true, span: said.span })
+        Some(Circle {
+            center: [cx, cy, cz].map(|x| x * scale),
+            frame,
+            sense,
+            radius: others.first().map(|r| r * scale),
+            sweep: None,
+            by_axis: true,
+            tangent: None,
+            second: false,
+            span,
+        })
+    }
+}
+
+impl Reader<'_> {
+    /// The circle of a centre, an axis and perhaps a radius; none where the axis is no direction.
+    fn circle_of(&mut self, numbers: &[f64], hand: Hand, said: &Said<'_>) -> Option<Circle> {
+        let circle = Circle::from_numbers(numbers, hand, self.scale, said.span);
+        if circle.is_none() {
+            let message = "the axis of this arc is no direction";
+            self.refuse_arc(Diagnostic::error("arc-plane", message).at(said.span, ""));
+        }
+        circle
     }
 
     fn wait(&mut self, circle: Circle) {
+        if matches!(self.pending, Some(Pending::Refused)) {
+            // Where it starts is not known any more.
+            return;
+        }
         if self.rapid {
-            self.refuse("rapid-arc", "an arc at rapid is not compiled", circle.span);
+            let message = "an arc at rapid is not compiled";
+            return self.refuse_arc(Diagnostic::refusal("rapid-arc", message).at(circle.span, ""));
         }
         self.pending = Some(Pending::Circle(circle));
     }
 
+    /// Says why an arc is none: what stands for its end is passed over, since one report is enough.
+    pub(super) fn refuse_arc(&mut self, diagnostic: Diagnostic) {
+        self.push(diagnostic);
+        self.rapid = false;
+        self.pending = Some(Pending::Refused);
+    }
+
+    /// Whether an arc stands where each point is a hole.
+    pub(super) fn arc_in_cycle(&mut self, span: Span) -> bool {
+        let within = self.cycle.is_some();
+        if within && !matches!(self.pending, Some(Pending::Refused)) {
+            let message = "an arc within a cycle: CYCLE/OFF has to stand before it";
+            self.refuse_arc(Diagnostic::error("arc-in-cycle", message).at(span, ""));
+        }
+        within
+    }
+
+    /// What a statement other than a point does to an arc that waits for one: nothing, or it is an error, since the arc
+    /// would be lost, or would start elsewhere.
+    pub(super) fn between(&mut self, meaning: Meaning, span: Span) {
+        if meaning == Meaning::Goto {
+            return;
+        }
+        self.close_arc();
+        match meaning {
+            // They move nothing, and leave the units and the frame as they are. A frame is looked at where it changes.
+            Meaning::Comment
+            | Meaning::LeftOut
+            | Meaning::Refused
+            | Meaning::Partno
+            | Meaning::Insert
+            | Meaning::Path
+            | Meaning::Mode
+            | Meaning::Stop
+            | Meaning::Opstop
+            | Meaning::Cutter
+            | Meaning::Tldata
+            | Meaning::Toolno
+            | Meaning::Spindl
+            | Meaning::Fedrat
+            | Meaning::Coolnt
+            | Meaning::Delay
+            | Meaning::Cutcom
+            | Meaning::Multax
+            | Meaning::Tlaxis
+            | Meaning::Frame
+            | Meaning::Goto => {}
+            Meaning::Rapid => {
+                if let Some(Pending::Circle(_) | Pending::Tangent(..)) = self.pending {
+                    let message = "RAPID stands within an arc: an arc at rapid is not compiled";
+                    self.refuse_arc(Diagnostic::refusal("rapid-arc", message).at(span, ""));
+                }
+            }
+            // The last tangent counts, and TLON takes it.
+            Meaning::Indirv | Meaning::Tlon => {
+                if let Some(Pending::Circle(_)) = self.pending {
+                    self.break_off(span);
+                }
+            }
+            Meaning::End
+            | Meaning::Units
+            | Meaning::Loadtl
+            | Meaning::Load
+            | Meaning::From
+            | Meaning::Gohome
+            | Meaning::Godlta
+            | Meaning::Circle
+            | Meaning::Movarc
+            | Meaning::NurbsSiemens
+            | Meaning::Nurbs
+            | Meaning::Knot
+            | Meaning::Cntrl
+            | Meaning::Movnrb
+            | Meaning::Cycle => self.break_off(span),
+        }
+    }
+
+    /// An arc that waits for its point gets none: something else stands at `span`.
+    pub(super) fn break_off(&mut self, span: Span) {
+        let (id, message, first) = match &self.pending {
+            Some(Pending::Circle(circle)) => {
+                ("arc-end-missing", "this circle has no end: no GOTO follows", circle.span)
+            }
+            Some(Pending::Tangent(_, first)) => ("tangent-alone", "no TLON follows this INDIRV", *first),
+            Some(Pending::Points(_) | Pending::Left(_) | Pending::Refused) | None => return,
+        };
+        let mut diagnostic = Diagnostic::error(id, message).at(first, "");
+        if span != first {
+            diagnostic = diagnostic.and_at(span, "this stands before one");
+        }
+        self.refuse_arc(diagnostic);
+    }
+
     /// `CIRCLE/cx,cy,cz,i,j,k[,r[,t,f,d,e]]`
     pub(super) fn circle(&mut self, said: &Said<'_>) {
+        if self.arc_in_cycle(said.span) {
+            return;
+        }
         let numbers = said.statement.numbers().unwrap_or_default();
         if ![6, 7, 11].contains(&numbers.len()) {
             let message = "CIRCLE has six numbers, seven with its radius, or eleven";
-            return self.error("arc-numbers", message, said.span);
+            return self.refuse_arc(Diagnostic::error("arc-numbers", message).at(said.span, ""));
         }
-        let hand = self.words.circle;
-        let (center, axis) = ([numbers[0], numbers[1], numbers[2]], [numbers[3], numbers[4], numbers[5]]);
-        if let Some(circle) = self.circle_of(center, axis, hand, said) {
-            let radius = numbers.get(6).map(|r| r * self.scale);
-            self.wait(Circle { radius, ..circle });
+        if let Some(circle) = self.circle_of(&numbers, self.words.circle, said) {
+            self.wait(circle);
         }
     }
 
     /// `MOVARC/cx,cy,cz,nx,ny,nz,r,ANGLE,sweep-degrees`
     pub(super) fn movarc(&mut self, said: &Said<'_>) {
+        if self.arc_in_cycle(said.span) {
+            return;
+        }
         let numbers: Vec<f64> =
             said.arguments().iter().filter_map(|placed| placed.argument.number()).collect();
         let [cx, cy, cz, nx, ny, nz, r, degrees] = numbers[..] else {
             let message = "MOVARC has a centre, an axis, a radius, ANGLE and degrees";
-            return self.error("arc-numbers", message, said.span);
+            return self.refuse_arc(Diagnostic::error("arc-numbers", message).at(said.span, ""));
         };
         if !(said.has("ANGLE") && 0.0 < degrees && degrees < 360_000.0) {
-            return self.error("arc-numbers", "MOVARC has ANGLE and degrees greater than zero", said.span);
+            let message = "MOVARC has ANGLE and degrees greater than zero";
+            return self.refuse_arc(Diagnostic::error("arc-numbers", message).at(said.span, ""));
         }
-        if let Some(circle) = self.circle_of([cx, cy, cz], [nx, ny, nz], Hand::Right, said) {
+        if let Some(circle) = self.circle_of(&[cx, cy, cz, nx, ny, nz, r], Hand::Right, said) {
             let sweep = Some(degrees / crate::units::DEGREES);
-            self.wait(Circle { radius: Some(r * self.scale), sweep, ..circle });
+            self.wait(Circle { sweep, ..circle });
         }
     }
 
-    /// `INDIRV/tx,ty,tz`
-    pub(super) fn indirv(&mut self, said: &Said<'_>) {
-        match said.statement.numbers().as_deref() {
-            Some(&[x, y, z]) => self.pending = Some(Pending::Tangent([x, y, z])),
-            _ => self.error("arguments", "INDIRV takes three numbers", said.span),
-        }
-    }
-
-    /// `TLON,GOFWD/(CIRCLE/…),ON,[2,INTOF,](LINE/…)` or with a cylinder and a plane.
-    pub(super) fn tlon(&mut self, said: &Said<'_>) {
-        let Some(Pending::Tangent(tangent)) = self.pending.take() else {
-            return self.error("tangent-missing", "TLON without an INDIRV before it", said.span);
-        };
-        let groups: Vec<&Statement<'_>> =
-            said.arguments().iter().filter_map(|placed| placed.argument.group()).collect();
-        let unread = |reader: &mut Self| reader.error("tlon", "this arc cannot be read", said.span);
-        let &[curve, to] = &groups[..] else { return unread(self) };
-        let Some(start) = self.program.position else {
-            return self.error("start-unknown", "an arc from a place that is not known", said.span);
-        };
-        let numbers = curve.numbers().unwrap_or_default();
-        let (center, axis, radius, toward) = if curve.major.eq_ignore_ascii_case("CIRCLE") {
-            let (&[cx, cy, cz, r], Some(&[_, _, _, ex, ey, ez])) =
-                (&numbers[..], to.numbers().as_deref().map(<&[f64; 6]>::try_from).and_then(Result::ok))
-            else {
-                return unread(self);
-            };
-            ([cx, cy, cz], None, r, [ex, ey, ez])
-        } else if curve.major.eq_ignore_ascii_case("CYLNDR") {
-            let (&[cx, cy, cz, u, v, w, r], Some(e)) = (&numbers[..], last_point(&to.arguments)) else {
-                return unread(self);
-            };
-            ([cx, cy, cz], Some([u, v, w]), r, e)
-        } else {
-            return unread(self);
-        };
-        let (center, toward) = (center.map(|x| x * self.scale), toward.map(|x| x * self.scale));
-        let flat = |i: usize| {
-            (start[i] - center[i]).abs() < MISFIT_REFUSED && (toward[i] - center[i]).abs() < MISFIT_REFUSED
-        };
-        // Where the arc goes counter-clockwise about it, (s − c) × t points along the axis.
-        let about = cross(minus(start, center), tangent);
-        let frame = match axis {
-            Some(axis) => frame_about(axis).map(|(frame, _)| frame),
-            None if flat(2) => Some(Plane::Xy.into()),
-            None if flat(1) => {
-                // A circle without an axis lies in X Y; in X Z it is that of a lathe.
-                return self.turned(said.span);
-            }
-            // Its plane is that of the centre, the start and the tangent there.
-            None => Frame::about(about, AXIS_SLACK).map(|(frame, _)| frame).filter(|frame| {
-                let [.., height] = frame.local(minus(toward, center));
-                height.abs() < MISFIT_REFUSED
-            }),
-        };
-        let Some(frame) = frame else {
-            return self.refuse("arc-plane", "where the axis of this arc points it does not say", said.span);
-        };
-        let [.., turn] = frame.local(about);
-        let sense = if 0.0 < turn { Sense::CounterClockwise } else { Sense::Clockwise };
-        let [ray_u, ray_v, _] = frame.local(minus(toward, center));
-        let length = (ray_u * ray_u + ray_v * ray_v).sqrt();
-        let radius = radius * self.scale;
-        if !(0.0 < length && 0.0 < radius) {
-            return unread(self);
-        }
-        let ([u, v, _], [.., w]) = (frame.local(center), frame.local(toward));
-        let end = frame.global([u + radius * ray_u / length, v + radius * ray_v / length, w]);
-        let circle = Circle {
-            center,
-            frame,
-            sense,
-            radius: Some(radius),
-            sweep: None,
-            by_axis: false,
-            span: said.span,
-        };
-        if self.rapid {
-            return self.refuse("rapid-arc", "an arc at rapid is not compiled", said.span);
-        }
-        self.arc_to(&circle, end, said.span);
-    }
-
-    /// An arc from where the tool is.
+    /// An arc from where the tool is; where it is none, what follows is read as if it had been.
     pub(super) fn arc_to(&mut self, circle: &Circle, end: [f64; 3], span: Span) {
+        if self.follow(circle, end, span).is_none() {
+            self.program.position = Some(end);
+        }
+    }
+
+    fn follow(&mut self, circle: &Circle, end: [f64; 3], span: Span) -> Option<()> {
         let whole = Span { start: circle.span.start, ..span };
         let Some(start) = self.program.position.filter(|_| self.program.has_moved()) else {
-            return self.error("start-unknown", "an arc from a place that no move went to", whole);
+            self.error("start-unknown", "an arc from a place that no move went to", whole);
+            return None;
         };
         let feed = self.feed;
-        let Some(feed) = self.per_minute(feed, whole) else { return };
+        let feed = self.per_minute(feed, whole)?;
         let ([su, sv, sw], [eu, ev, height]) = (circle.frame.local(start), circle.frame.local(end));
         let chord = ((eu - su) * (eu - su) + (ev - sv) * (ev - sv)).sqrt();
         let mut end = end;
@@ -236,22 +294,30 @@ impl Reader<'_> {
         }
         let [u, v, _] = circle.frame.local(circle.center);
         if self.program.stood() != self.program.axis() {
-            return self.turning_arc(span);
+            self.turning_arc(span);
+            return None;
         }
         let (start, place) = (self.program.place(&start), self.program.place(&end));
         let mut arc = match Arc::new(circle.frame, circle.sense, start, place, [u, v]) {
             Ok(arc) => arc,
-            Err(error) => return self.error("arc", error.to_string(), whole),
+            Err(error) => {
+                self.error("arc", error.to_string(), whole);
+                return None;
+            }
         };
         let stated = circle.radius.map_or(0.0, |r| (r - arc.radius()).abs());
         let misfit = arc.misfit().max(stated);
         if MISFIT_REFUSED < misfit {
             let message = format!("start, end, centre and radius are {misfit:.4} mm away from one circle");
-            return self.error("arc-misfit", message, whole);
+            self.error("arc-misfit", message, whole);
+            return None;
         }
         if MISFIT_WARNED < misfit {
             let message = format!("start, end, centre and radius are {misfit:.4} mm away from one circle");
             self.push(Diagnostic::warning("arc-misfit", message).at(whole, ""));
+        }
+        if !self.holds_tangent(circle, &arc, whole) {
+            return None;
         }
         if circle.by_axis {
             self.entered(&arc, whole);
@@ -261,17 +327,19 @@ impl Reader<'_> {
             Some(sweep) => {
                 let turns = ((sweep - arc.sweep().abs()) / (2.0 * std::f64::consts::PI)).round();
                 let rest = sweep - arc.sweep().abs() - turns * 2.0 * std::f64::consts::PI;
-                if 0.01 < (rest * arc.radius()).abs() {
+                if SWEEP_SLACK + 2.0 * misfit < (rest * arc.radius()).abs() {
                     let message = "the sweep of this arc does not lead to its end";
-                    return self.error("arc-sweep", message, whole);
+                    self.error("arc-sweep", message, whole);
+                    return None;
                 }
                 turns
             }
         };
         arc = arc.with_turns(turns.max(0.0) as u32);
         self.program.arc(arc, feed, whole);
-        let left = Left { tangent: arc.tangent(1.0), frame: circle.frame, at: end };
+        let left = Left { tangent: arc.tangent(1.0), frame: circle.frame, at: end, ring: None };
         self.pending = circle.by_axis.then_some(Pending::Left(left));
+        Some(())
     }
 
     /// An arc in which the tool turns: how its direction goes along the arc no page says.
@@ -294,14 +362,18 @@ impl Reader<'_> {
     }
 
     /// A line after an arc votes on its sense.
-    pub(super) fn left(&mut self, left: &Left, to: [f64; 3]) {
+    pub(super) fn left(&mut self, left: &Left, to: [f64; 3], at: Span) {
         let span = Span::new(self.source, 0..0);
         self.votes.count(left.frame, left.tangent, left.at, to, span);
+        if let Some((ring, reading)) = left.ring.as_ref().filter(|_| !self.rapid) {
+            self.passes_ring(ring, *reading, to, at);
+        }
     }
 
     /// Whether the file contradicts the sense that its system has.
     pub(super) fn vote(&mut self) {
-        let Votes { agree, contradict, first } = self.votes;
+        self.lines_on_circles();
+        let Votes { agree, contradict, first, .. } = self.votes;
         if agree < contradict && 3 <= contradict {
             let message = format!(
                 "{contradict} of {} arcs go the other way round than the lines beside them",
@@ -337,12 +409,4 @@ impl Votes {
             self.first = self.first.or(Some(span).filter(|span| span.end != 0));
         }
     }
-}
-
-/// The last `(POINT/x,y,z)` among arguments.
-fn last_point(arguments: &[Placed<'_>]) -> Option<[f64; 3]> {
-    arguments.iter().rev().find_map(|placed| {
-        let group = placed.argument.group().filter(|group| group.major.eq_ignore_ascii_case("POINT"))?;
-        group.numbers()?.try_into().ok()
-    })
 }

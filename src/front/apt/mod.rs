@@ -34,6 +34,7 @@ mod arcs;
 mod cycles;
 mod directions;
 mod motion;
+mod points;
 mod program;
 mod reader;
 mod records;
@@ -42,6 +43,7 @@ mod running;
 mod splines;
 mod statement;
 mod systems;
+mod tangents;
 mod technology;
 mod words;
 

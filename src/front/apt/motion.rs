@@ -1,6 +1,7 @@
 //! Points, increments, rapids and the tool axis.
 
-use super::arcs::{Circle, Left};
+use super::arcs::{Circle, Left, is_unit};
+use super::points::Points;
 use super::program::UPRIGHT;
 use super::reader::{Reader, Said};
 use super::technology::Feed;
@@ -16,10 +17,19 @@ const AXIS_SLACK: f64 = 2.0e-6;
 pub(super) enum Pending {
     /// A circle waits for its end.
     Circle(Circle),
-    /// A start tangent waits for its arc, INDIRV.
-    Tangent([f64; 3]),
+    /// A circle has a point, and waits for more.
+    Points(Points),
+    /// A start tangent waits for its arc, INDIRV, and where it stands.
+    Tangent([f64; 3], Span),
     /// An arc was left in this direction: a straight line after it may tell whether its sense was right.
     Left(Left),
+    /// An arc was refused: the point that it waited for is passed over, since one report is enough.
+    Refused,
+}
+
+/// Whether a tool axis, of whatever length, is one on an arc with that of length 1.
+pub(super) fn is_along(axis: &[f64; 3], other: [f64; 3]) -> bool {
+    is_unit(other) && direction::angle(axis, &other) <= AXIS_SLACK
 }
 
 impl Reader<'_> {
@@ -38,19 +48,21 @@ impl Reader<'_> {
     pub(super) fn goto(&mut self, numbers: &[f64], line: u32, span: Span) {
         if numbers.len() == 6 {
             if !self.set_axis([numbers[3], numbers[4], numbers[5]], span) {
-                return;
+                return self.lose(numbers);
             }
         } else if self.axis_stale
             && numbers.len() == 3
             && AXIS_SLACK < direction::angle(&self.program.axis(), &UPRIGHT)
         {
-            return self.stale_axis(span);
+            self.stale_axis(span);
+            return self.lose(numbers);
         } else if numbers.len() != 3 {
             let message =
                 format!("a point has three numbers, or six with a tool axis, not {}", numbers.len());
-            return self.error("goto-numbers", message, span);
+            self.error("goto-numbers", message, span);
+            return self.lose(numbers);
         }
-        let Some(point) = self.point(numbers, span) else { return };
+        let Some(point) = self.point(numbers, span) else { return self.lose(&[]) };
         if self.cycle.is_some() {
             return self.hole(point, span);
         }
@@ -71,51 +83,77 @@ impl Reader<'_> {
         self.program.line(&point, feed, line, span);
     }
 
-    /// Meets a point where something waits for one; whether it was the end of an arc.
+    /// Meets a point where something waits for one; whether it was of an arc.
     fn met(&mut self, point: [f64; 3], span: Span) -> bool {
         match self.pending.take() {
             Some(Pending::Circle(circle)) => {
-                self.arc_to(&circle, point, span);
-                true
+                self.circle_meets(circle, point, span);
+                return true;
             }
-            Some(Pending::Tangent(_)) => {
+            Some(Pending::Points(points)) => {
+                if self.points_meet(points, point, span) {
+                    return true;
+                }
+            }
+            Some(Pending::Tangent(..)) => {
                 self.error("tangent-alone", "INDIRV stands before a point, not before TLON", span);
-                false
             }
-            Some(Pending::Left(left)) => {
-                self.left(&left, point);
-                false
+            Some(Pending::Refused) => {
+                self.rapid = false;
+                self.program.position = Some(point);
+                return true;
             }
-            None => false,
+            left => self.pending = left,
+        }
+        // What an arc before it left behind.
+        if let Some(Pending::Left(left)) = self.pending.take() {
+            self.left(&left, point, span);
+        }
+        false
+    }
+
+    /// A point was refused: what follows is read as if the tool were there, since one report is enough.
+    fn lose(&mut self, numbers: &[f64]) {
+        self.close_arc();
+        self.pending = None;
+        self.rapid = false;
+        if let &[x, y, z, ..] = numbers {
+            let point = [x, y, z].map(|x| x * self.scale);
+            self.program.position = Some(point).filter(|point| point.iter().all(|x| x.is_finite()));
         }
     }
 
     /// What waits at the end of the file.
     pub(super) fn end_pending(&mut self) {
-        match self.pending.take() {
-            Some(Pending::Circle(circle)) => {
-                self.error("arc-end-missing", "this circle has no end: no GOTO follows", circle.span);
-            }
-            Some(Pending::Tangent(_) | Pending::Left(_)) | None => {}
+        self.close_arc();
+        match &self.pending {
+            Some(Pending::Circle(circle)) => self.break_off(circle.span),
+            Some(Pending::Tangent(_, span)) => self.break_off(*span),
+            Some(Pending::Points(_) | Pending::Left(_) | Pending::Refused) | None => {}
         }
     }
 
     /// Takes a tool axis; whether it is a direction.
     pub(super) fn set_axis(&mut self, axis: [f64; 3], span: Span) -> bool {
-        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(0.5 < length && length < 2.0) {
+        self.axis_stale = false;
+        if !is_unit(axis) {
             self.error("tool-axis", "the tool axis is no direction", span);
             return false;
         }
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         let axis = axis.map(|x| x / length);
-        self.axis_stale = false;
         if axis != self.program.axis() {
-            if let Some(Pending::Circle(_)) = &self.pending {
-                if direction::angle(&axis, &self.program.axis()) <= AXIS_SLACK {
+            match &self.pending {
+                Some(Pending::Circle(_) | Pending::Points(_)) if is_along(&self.program.axis(), axis) => {
                     return true;
                 }
-                self.turning_arc(span);
-                return false;
+                Some(Pending::Circle(_)) => {
+                    self.turning_arc(span);
+                    self.pending = Some(Pending::Refused);
+                    return false;
+                }
+                Some(Pending::Points(_)) => self.close_arc(),
+                Some(Pending::Tangent(..) | Pending::Left(_) | Pending::Refused) | None => {}
             }
             self.program.turn(axis);
         }
@@ -134,6 +172,7 @@ impl Reader<'_> {
     fn stale_axis(&mut self, span: Span) {
         let message =
             "a point without a tool axis, behind MULTAX/OFF or another tool, while the tool is tilted";
+        self.axis_stale = false;
         self.push(
             Diagnostic::error("tool-axis-stale", message)
                 .at(span, "")

@@ -2,6 +2,7 @@
 
 use super::cycles::Cycle;
 use super::motion::Pending;
+use super::points::Survey;
 use super::program::Builder;
 use super::records::{Kind, MAX_RECORD, Record, Records};
 use super::remarks::Matrix;
@@ -73,6 +74,8 @@ pub(super) struct Reader<'s> {
     pub(super) matrix: Option<Matrix>,
     /// How many arcs agree with the sense that their system has, and how many do not, by their neighbours' tangents.
     pub(super) votes: super::arcs::Votes,
+    /// What the arcs of the file show of the points behind them.
+    pub(super) survey: Survey,
 }
 
 /// One statement and its record.
@@ -160,11 +163,13 @@ impl<'s> Reader<'s> {
             frame: None,
             matrix: None,
             votes: super::arcs::Votes::default(),
+            survey: Survey::default(),
         }
     }
 
     /// Reads a text.
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
+        self.survey = Survey::of(text, &self.words);
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
         let mut records = Records::new(text);
         while self.errors < MAX_ERRORS && !self.hopeless {
@@ -179,7 +184,10 @@ impl<'s> Reader<'s> {
             let Some(record) = &records.next() else { break };
             match record.kind {
                 Kind::Code => self.code(record),
-                Kind::Remark => self.remark(&record.text, record.span(self.source)),
+                Kind::Remark => {
+                    self.close_arc();
+                    self.remark(&record.text, record.span(self.source));
+                }
                 Kind::TooLong => {
                     let message = format!("a statement of more than {MAX_RECORD} characters is no CL data");
                     let start = record.range.start;
@@ -285,6 +293,7 @@ impl<'s> Reader<'s> {
         }
         let statement = match statement::parse(&record.text) {
             Ok(statement) => statement,
+            Err(_) if self.listed_point(&record.text, span) => return,
             Err(unreadable) => {
                 let at = unreadable.at.min(record.text.len());
                 let width = record.text[at..].chars().next().map_or(0, char::len_utf8);
@@ -322,6 +331,7 @@ impl<'s> Reader<'s> {
 
     /// A statement whose text goes to the end of its line.
     fn free_text(&mut self, record: &Record<'_>, span: Span) {
+        self.close_arc();
         let text = record.text.as_ref();
         // The longest free word has nine letters.
         let end = text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(text.len());
@@ -380,6 +390,7 @@ impl<'s> Reader<'s> {
     /// What a statement means.
     fn statement(&mut self, meaning: Meaning, said: &Said<'_>) {
         let word = said.statement.major;
+        self.between(meaning, said.span);
         match meaning {
             Meaning::Comment => {
                 let text = said.record.text.replace('/', " ");

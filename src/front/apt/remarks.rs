@@ -148,6 +148,7 @@ impl Reader<'_> {
         if self.frame.as_deref() == Some(text.as_str()) {
             return;
         }
+        self.break_off(span);
         self.program.comment(&text, span);
         self.frame = Some(text);
         if self.program.has_moved() {

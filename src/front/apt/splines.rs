@@ -449,7 +449,7 @@ impl Reader<'_> {
         feed: f64,
         span: Span,
     ) {
-        if self.rapid {
+        if std::mem::take(&mut self.rapid) {
             return self.refuse("rapid-arc", "a spline at rapid is not compiled", span);
         }
         self.pending = None;

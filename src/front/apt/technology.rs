@@ -37,6 +37,17 @@ fn feed_unit(word: &str) -> Option<FeedUnit> {
     })
 }
 
+/// mm in a unit of UNITS.
+pub(super) fn unit_scale(word: &str) -> Option<f64> {
+    match word.to_ascii_uppercase().as_str() {
+        "MM" | "MILLIMETER" | "MILLIMETERS" => Some(1.0),
+        "INCHES" | "INCH" | "IN" => Some(INCH),
+        "CM" => Some(10.0),
+        "FEET" | "FT" => Some(FOOT),
+        _ => None,
+    }
+}
+
 impl Reader<'_> {
     /// `UNITS/MM|INCHES|CM|FEET`
     pub(super) fn units(&mut self, said: &Said<'_>) {
@@ -44,14 +55,7 @@ impl Reader<'_> {
             [one] => one.argument.word().unwrap_or_default(),
             _ => "",
         };
-        let scale = match word.to_ascii_uppercase().as_str() {
-            "MM" | "MILLIMETER" | "MILLIMETERS" => Some(1.0),
-            "INCHES" | "INCH" | "IN" => Some(INCH),
-            "CM" => Some(10.0),
-            "FEET" | "FT" => Some(FOOT),
-            _ => None,
-        };
-        match scale {
+        match unit_scale(word) {
             Some(scale) => {
                 if self.units_stated && scale != self.scale {
                     let message =
@@ -81,8 +85,14 @@ impl Reader<'_> {
 
     /// Turning is another geometry: X is a diameter or a radius, arcs lie in X Z, speeds are cutting speeds.
     pub(super) fn turned(&mut self, span: Span) {
+        let diagnostic = self.turning(span);
+        self.push(diagnostic);
+    }
+
+    /// What a turning file is refused with: nothing behind it is worth a report.
+    pub(super) fn turning(&mut self, span: Span) -> Diagnostic {
         self.hopeless = true;
-        self.refuse("turning", "this is a turning file; milling is compiled only", span);
+        Diagnostic::refusal("turning", "this is a turning file; milling is compiled only").at(span, "")
     }
 
     /// `CUTTER/d,r,e,f,a,b,h`

@@ -17,13 +17,19 @@ use std::collections::{BTreeMap, HashMap};
 use toml::Spanned;
 
 /// The keys of a word table.
-pub const KEYS: &[Key] =
-    &[Key::value("extends"), Key::value("circle"), Key::value("words"), Key::value("cycles")];
+pub const KEYS: &[Key] = &[
+    Key::value("extends"),
+    Key::value("circle"),
+    Key::value("circle_points"),
+    Key::value("words"),
+    Key::value("cycles"),
+];
 
 #[derive(Deserialize)]
 struct File {
     extends: Option<Spanned<String>>,
     circle: Option<Spanned<String>>,
+    circle_points: Option<Spanned<String>>,
     words: Option<BTreeMap<String, Spanned<String>>>,
     cycles: Option<BTreeMap<String, Spanned<Vec<String>>>>,
 }
@@ -194,6 +200,27 @@ pub(super) enum Hand {
     Left,
 }
 
+/// What the points are that follow a circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ArcPoints {
+    /// The first is its end.
+    End,
+    /// Those that go on along it are on the arc, and the last of them is its end.
+    Along,
+    /// The same, with a warning where it matters, since lines would look so too.
+    Likely,
+    /// Nobody knows: where it matters the file is refused.
+    Unsure,
+}
+
+/// What follows circles, by the names that tables use.
+const ARC_POINTS: &[(&str, ArcPoints)] = &[
+    ("end", ArcPoints::End),
+    ("along", ArcPoints::Along),
+    ("likely", ArcPoints::Likely),
+    ("unsure", ArcPoints::Unsure),
+];
+
 /// A word table, with all that it extends.
 #[derive(Clone, Debug)]
 pub(super) struct Words {
@@ -201,12 +228,19 @@ pub(super) struct Words {
     cycles: BTreeMap<String, Vec<String>>,
     /// The sense of CIRCLE.
     pub(super) circle: Hand,
+    /// What the points are that follow CIRCLE.
+    pub(super) points: ArcPoints,
 }
 
 impl Words {
     /// A table that is built in.
     pub(super) fn built_in(name: &str) -> Words {
-        let mut words = Words { meanings: HashMap::new(), cycles: BTreeMap::new(), circle: Hand::Right };
+        let mut words = Words {
+            meanings: HashMap::new(),
+            cycles: BTreeMap::new(),
+            circle: Hand::Right,
+            points: ArcPoints::Unsure,
+        };
         // A test reads every table, so that an error cannot hide here.
         let _ = words.add_built_in(name);
         words
@@ -248,6 +282,15 @@ impl Words {
                 "right-hand" => self.circle = Hand::Right,
                 "left-hand" => self.circle = Hand::Left,
                 _ => found.push(unknown(circle, &["right-hand", "left-hand"], "a sense of circles")),
+            }
+        }
+        if let Some(points) = &file.circle_points {
+            match ARC_POINTS.iter().find(|(name, _)| name == points.get_ref()) {
+                Some((_, known)) => self.points = *known,
+                None => {
+                    let names: Vec<&str> = ARC_POINTS.iter().map(|(name, _)| *name).collect();
+                    found.push(unknown(points, &names, "what the points behind a circle are"));
+                }
             }
         }
         for (word, meaning) in file.words.unwrap_or_default() {
