@@ -53,12 +53,12 @@ fn an_end_beside_its_circle_is_warned_of_or_refused() {
 
 #[test]
 fn many_of_them_are_one_warning_about_the_worst() {
-    let mut text = "G0 X15. Y5. Z0.\nG1 Z-1. F100.\n".to_owned();
     // More than a reader tells of before it gives up.
-    for i in 0..200 {
+    let arc = |i: u32| {
         let y = if i == 77 { "10.005" } else { "10.004" };
-        text = text + &format!("G1 X15. Y5.\nG2 X20. Y{y} I5. J0.\n");
-    }
+        format!("G1 X15. Y5.\nG2 X20. Y{y} I5. J0.\n")
+    };
+    let text = "G0 X15. Y5. Z0.\nG1 Z-1. F100.\n".to_owned() + &(0..200).map(arc).collect::<String>();
     let machine = Machine::built_in("mazak").expect("a machine");
     let read = (machine.dialect.read)(&text, SourceId::INPUT, &machine).expect("it is read");
     let misfits: Vec<_> = read.warnings.0.iter().filter(|d| d.id == "arc-misfit").collect();
