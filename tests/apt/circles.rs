@@ -55,9 +55,24 @@ fn one(system: &str, body: &str) -> (f64, usize, Vec<&'static str>) {
     ((sweeps[0] * 100.0).round() / 100.0, lines, warnings(&intent))
 }
 
+/// Another arc with points before its end, and back to where `CIRCLE` starts.
+const ANOTHER: &str =
+    "GOTO/130,0,0\nCIRCLE/130,10,0,0,0,1,10\nGOTO/137.071,2.929,0\nGOTO/140,10,0\nGOTO/30,0,0\n";
+
 #[test]
 fn the_points_behind_a_circle_of_creo_are_on_its_arc() {
-    let creo = |points: &str| one("creo", &format!("{CIRCLE}{points}"));
+    let creo = |points: &str| {
+        // A file in which one arc alone looks like it shows nothing.
+        let lone = format!("{CIRCLE}{points}");
+        assert_eq!(errors("creo", &lone), ["arc-points"], "{points}");
+        let intent = read("creo", &format!("{ANOTHER}{lone}")).unwrap_or_else(|e| panic!("{points}: {e:?}"));
+        let (sweeps, lines) = arcs(&intent);
+        let &[first, second] = &sweeps[..] else { panic!("{points}: {sweeps:?}") };
+        assert!((first - 90.0).abs() < 0.01);
+        let warnings = warnings(&intent);
+        assert_eq!(warnings[0], "arc-points");
+        ((second * 100.0).round() / 100.0, lines, warnings[1..].to_vec())
+    };
     assert_eq!(creo("GOTO/37.071,2.929,0\nGOTO/40,10,0"), (90.0, 0, vec!["arc-points"]));
     // Round once, and away.
     let round = "GOTO/40,10,0\nGOTO/20,10,0\nGOTO/30,0,0\n";
@@ -73,12 +88,17 @@ fn the_points_behind_a_circle_of_creo_are_on_its_arc() {
         })
         .collect();
     let near = near.join("\n");
-    assert_eq!(creo(&near), (90.0, 0, vec![]));
+    assert_eq!(one("creo", &format!("{CIRCLE}{near}")), (90.0, 0, vec![]));
     // The other sense, and another plane.
+    let with = |body: &str| {
+        let intent = read("creo", &format!("{ANOTHER}{body}")).unwrap_or_else(|e| panic!("{body}: {e:?}"));
+        let (sweeps, lines) = arcs(&intent);
+        (sweeps[1].round(), lines)
+    };
     let other = "CIRCLE/30,10,0,0,0,-1,10\nGOTO/22.92893,2.92893,0\nGOTO/20,10,0\nGOTO/20,50,0";
-    assert_eq!(one("creo", other), (-90.0, 1, vec!["arc-points"]));
+    assert_eq!(with(other), (-90.0, 1));
     let upright = "CIRCLE/30,0,10,0,-1,0,10\nGOTO/37.07107,0,2.92893\nGOTO/40,0,10";
-    assert_eq!(one("creo", upright).1, 0);
+    assert_eq!((with(upright).0.abs(), with(upright).1), (90.0, 0));
 }
 
 #[test]
@@ -157,9 +177,9 @@ fn other_systems_end_a_circle_at_its_first_point() {
 /// The arc is one block, and proved.
 #[test]
 fn an_arc_with_points_is_one_block() {
-    let text = format!("{HEAD}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nGOTO/40,60,0\nFINI\n");
+    let text = format!("{HEAD}{ANOTHER}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nGOTO/40,60,0\nFINI\n");
     for (name, block) in [
-        ("mazak", "G17 G3 X40. Y10. I0. J10."),
+        ("mazak", "G3 X40. Y10. I0. J10."),
         ("sinumerik", "G3 X40 Y10 I0 J10"),
         ("heidenhain", "C X+40 Y+10 DR+"),
     ] {
@@ -329,11 +349,11 @@ fn a_start_tangent_is_one() {
 /// The words of a shop reach the program.
 #[test]
 fn what_is_warned_of_points_to_its_place() {
-    let text = format!("{HEAD}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nFINI\n");
+    let text = format!("{HEAD}{ANOTHER}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nFINI\n");
     let sources = Sources::new(Source::new("input.ncl", text));
     let machine = Machine::built_in("mazak").expect("mazak");
     let output = compile(&sources, front::find("creo").expect("creo"), &machine, &Options::default())
         .unwrap_or_else(|f| panic!("{f:?}"));
     let drawn = output.intent.warnings.render(&sources, false);
-    assert!(drawn.contains("input.ncl:8:1") && drawn.contains("circle_points"), "{drawn}");
+    assert!(drawn.contains("input.ncl:9:1") && drawn.contains("circle_points"), "{drawn}");
 }

@@ -18,7 +18,6 @@ use crate::dialect::frame::{Frame, Met};
 use crate::dialect::{Form, Reading};
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
-use crate::machine::template::Template;
 use crate::machine::{Machine, RotaryFeed};
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
@@ -194,35 +193,6 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
 impl Reader<'_> {
     fn error(&mut self, id: &'static str, message: impl Into<String>, range: Range<usize>) {
         self.assembler.error(id, message, range);
-    }
-
-    /// Where a fixed line calls a tool, the offset that was taken out of the machine's lines must follow.
-    fn tool_line(&mut self, body: &str, offset: &Offset<'_>, range: Range<usize>) {
-        let machine = self.assembler.machine;
-        let frame = &machine.frame;
-        let is = |lines: &[Template]| lines.first().is_some_and(|line| line.matched(body).is_some());
-        for (lines, due) in [(&frame.tool, offset.tool), (&frame.tool_spindle, offset.tool_spindle)] {
-            match (is(lines), due) {
-                (false, _) => {}
-                (true, true) => {
-                    self.offset_due = self.assembler.tool();
-                    self.offset_tool = None;
-                }
-                // The length comes with the tool.
-                (true, false) => self.takes_length(range.clone()),
-            }
-        }
-        if is(&frame.tip_control) {
-            self.takes_length(range);
-        }
-    }
-
-    /// A retraction in machine coordinates may end the length of the tool, so that it is called again before the next move of Z.
-    fn home_line(&mut self, body: &str) {
-        let first = self.assembler.machine.frame.home.first();
-        if first.is_some_and(|template| template.matched(body).is_some()) && !self.assembler.leads_tip() {
-            self.offset_due = self.offset_due.or(self.offset_tool.take());
-        }
     }
 
     /// One block: its words, then what they do together.

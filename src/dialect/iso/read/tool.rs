@@ -3,10 +3,41 @@
 use super::{Block, Motion, Reader};
 use crate::diagnostic::Diagnostic;
 use crate::dialect::arc;
+use crate::dialect::iso::Offset;
 use crate::geom::arc::Plane;
+use crate::machine::template::Template;
 use std::ops::Range;
 
 impl Reader<'_> {
+    /// Where a fixed line calls a tool, the offset that was taken out of the machine's lines must follow.
+    pub(super) fn tool_line(&mut self, body: &str, offset: &Offset<'_>, range: Range<usize>) {
+        let machine = self.assembler.machine;
+        let frame = &machine.frame;
+        let is = |lines: &[Template]| lines.first().is_some_and(|line| line.matched(body).is_some());
+        for (lines, due) in [(&frame.tool, offset.tool), (&frame.tool_spindle, offset.tool_spindle)] {
+            match (is(lines), due) {
+                (false, _) => {}
+                (true, true) => {
+                    self.offset_due = self.assembler.tool();
+                    self.offset_tool = None;
+                }
+                // The length comes with the tool.
+                (true, false) => self.takes_length(range.clone()),
+            }
+        }
+        if is(&frame.tip_control) {
+            self.takes_length(range);
+        }
+    }
+
+    /// A retraction in machine coordinates may end the length of the tool, so that it is called again before the next move of Z.
+    pub(super) fn home_line(&mut self, body: &str) {
+        let first = self.assembler.machine.frame.home.first();
+        if first.is_some_and(|template| template.matched(body).is_some()) && !self.assembler.leads_tip() {
+            self.offset_due = self.offset_due.or(self.offset_tool.take());
+        }
+    }
+
     /// The length of a tool is taken here: along Z in G17, and nobody knows along which axis in another plane.
     pub(super) fn takes_length(&mut self, range: Range<usize>) {
         if self.plane != Plane::Xy {
