@@ -221,24 +221,14 @@ impl Spelling {
 }
 
 /// Writes `units` / 10^`digits` without trailing zeros; zero has no sign unless signs are always written.
-#[inline]
 pub fn write_units(out: &mut Vec<u8>, units: i64, digits: u8, spelling: Spelling) {
     if units < 0 {
         out.push(b'-');
     } else if spelling.sign_always {
         out.push(b'+');
     }
-    match u32::try_from(units.unsigned_abs()) {
-        Ok(units) if units < SHORT && digits < SHORT_DIGITS => write_short(out, units, digits, spelling),
-        Ok(_) | Err(_) => write_long(out, units.unsigned_abs(), digits, spelling),
-    }
-}
-
-/// A number of any length, its digits one by one.
-#[cold]
-fn write_long(out: &mut Vec<u8>, units: u64, digits: u8, spelling: Spelling) {
     let mut buffer = itoa::Buffer::new();
-    let text = buffer.format(units).as_bytes();
+    let text = buffer.format(units.unsigned_abs()).as_bytes();
     let decimals = usize::from(digits);
     let (whole, mut fraction) = text.split_at(text.len().saturating_sub(decimals));
     while let [rest @ .., b'0'] = fraction {
@@ -256,54 +246,6 @@ fn write_long(out: &mut Vec<u8>, units: u64, digits: u8, spelling: Spelling) {
     } else if spelling.point_always {
         out.push(b'.');
     }
-}
-
-/// Numbers below this have at most [`SHORT_DIGITS`] digits, which fit into one register.
-const SHORT: u32 = 100_000_000;
-
-/// How many digits a register holds, one in a byte.
-const SHORT_DIGITS: u8 = 8;
-
-/// A number of at most eight digits of which at least one stands before the point, without a branch for each digit: their
-/// counts follow no pattern that a processor could guess.
-#[inline]
-fn write_short(out: &mut Vec<u8>, units: u32, decimals: u8, spelling: Spelling) {
-    const ZEROS: u64 = u64::from_ne_bytes([b'0'; 8]);
-    // All of them are written, and those that are too many taken back.
-    let write = |out: &mut Vec<u8>, digits: u64, count: u32| {
-        let end = out.len() + count as usize;
-        out.extend_from_slice(&(digits | ZEROS).to_le_bytes());
-        out.truncate(end);
-    };
-    let digits = eight_digits(units);
-    let places = u32::from(SHORT_DIGITS - decimals);
-    let fraction = digits.unbounded_shr(8 * places);
-    let behind = (u64::BITS - fraction.leading_zeros()).div_ceil(8);
-    let least = u32::from(spelling.leading_zero || behind == 0);
-    let leading = (digits.trailing_zeros() / 8).min(places - least);
-    write(out, digits.unbounded_shr(8 * leading), places - leading);
-    if 0 < behind {
-        out.push(b'.');
-        write(out, fraction, behind);
-    } else if spelling.point_always {
-        out.push(b'.');
-    }
-}
-
-/// The eight digits of a number below 10⁸, the first in the lowest byte. Two halves of four digits become four pairs, and
-/// these become digits, each step for all of them at once:
-///
-/// ```text
-/// ⌊x/100⌋ = ⌊x · 10486 / 2²⁰⌋   for x < 10⁴        ⌊x/10⌋ = ⌊x · 103 / 2¹⁰⌋   for x < 100
-/// ```
-#[inline]
-fn eight_digits(number: u32) -> u64 {
-    let (high, low) = (u64::from(number / 10_000), u64::from(number % 10_000));
-    let fours = high | (low << 32);
-    let hundreds = ((fours * 10_486) >> 20) & 0x0000_007F_0000_007F;
-    let pairs = hundreds | ((fours - 100 * hundreds) << 16);
-    let tens = ((pairs * 103) >> 10) & 0x000F_000F_000F_000F;
-    tens | ((pairs - 10 * tens) << 8)
 }
 
 impl Decimal {
@@ -461,17 +403,6 @@ mod tests {
     }
 
     #[test]
-    fn eight_digits_are_those_of_the_number() {
-        // Each step divides numbers below 10⁴, and these are all of them, in either half.
-        for half in 0..10_000u32 {
-            for number in [half, 10_000 * half, 10_000 * half + 9_999 - half] {
-                let text = eight_digits(number).to_le_bytes().map(|digit| char::from(b'0' + digit));
-                assert_eq!(text.iter().collect::<String>(), format!("{number:08}"));
-            }
-        }
-    }
-
-    #[test]
     fn numbers_are_read_exactly() {
         assert_eq!(read_decimal(b"-.50X", false), Ok((Decimal::new(-5, 1), 4)));
         assert_eq!(read_decimal(b"49.", false), Ok((Decimal::new(49, 0), 3)));
@@ -510,20 +441,6 @@ mod tests {
             let x = f64::from_bits((middle.to_bits() as i64 + ulps) as u64);
             let printed: f64 = format!("{x:.0$}", usize::from(digits)).parse().unwrap();
             prop_assert_eq!(printed, text(x, digits).parse::<f64>().unwrap());
-        }
-
-        #[test]
-        fn short_numbers_are_written_as_long_ones(
-            units in prop_oneof![0..SHORT, 0..1000u32, (0..1000u32).prop_map(|n| n * 10_000)],
-            digits in 0..SHORT_DIGITS,
-            point_always in any::<bool>(),
-            leading_zero in any::<bool>(),
-        ) {
-            let spelling = Spelling { point_always, sign_always: false, leading_zero };
-            let (mut short, mut long) = (b"X".to_vec(), b"X".to_vec());
-            write_short(&mut short, units, digits, spelling);
-            write_long(&mut long, units.into(), digits, spelling);
-            prop_assert_eq!(short, long);
         }
 
         /// Any bytes, read one by one.

@@ -95,7 +95,7 @@ impl<'m> Modal<'m> {
         let step = self.machine.text.number_step;
         if step != 0 {
             self.text(prefix);
-            write_units(&mut self.out, self.number.into(), 0, Spelling::PLAIN);
+            self.text(itoa::Buffer::new().format(self.number));
             self.gap();
             self.number = self.number.wrapping_add(step);
         }
@@ -113,8 +113,7 @@ impl<'m> Modal<'m> {
     /// Ends a line.
     #[inline]
     pub fn end_line(&mut self) {
-        // One byte or two: too few for a copy of so many bytes.
-        self.out.extend(self.machine.text.line_end.text().bytes());
+        self.text(self.machine.text.line_end.text());
     }
 
     /// Ends a word. Where blocks have no blanks, a number ends where a letter begins.
