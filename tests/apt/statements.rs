@@ -245,6 +245,22 @@ const TABLE: &[(&str, &str, Becomes)] = &[
         Read("TX 0.0 TY 0.0 TZ 50.0"),
     ),
     ("creo", "MOVNRB/5AXIS", Refused("nurbs-header")),
+    (
+        "catia",
+        "FEDRAT/0.1,MMPR\nBEGIN NURBS_SIEMENS(D=3,F=0.1,AXIS=0,0,1)\nN0,XT=0,YT=0,ZT=10,DK=0,W=1\nEND NURBS",
+        Refused("nurbs-revolutions"),
+    ),
+    (
+        "catia",
+        "BEGIN NURBS_SIEMENS(D=3,F=9,AXIS=0,0,1)\nN7,XT=0,YT=0,ZT=10,DK=0,W=1\nN1\nEND NURBS",
+        Refused("nurbs-point"),
+    ),
+    ("nx", "NURBS/\nKNOT/1.0\nCNTRL/1,0\nCNTRL/2,0,10\nCNTRL/3,0,10", Refused("nurbs-order")),
+    (
+        "nx",
+        "CYCLE/DRILL,RAPTO,2,FEDTO,-7,MMPM,50\nGOTO/5,0,0\nNURBS/\nKNOT/1.0\nCNTRL/1,0,10\nCNTRL/2,0,10\nCNTRL/3,0,10",
+        Refused("spline-in-cycle"),
+    ),
     // cycles
     (
         "creo",

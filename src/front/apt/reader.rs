@@ -446,6 +446,11 @@ impl<'s> Reader<'s> {
             Meaning::Movarc => self.movarc(said),
             Meaning::Indirv => self.indirv(said),
             Meaning::Tlon => self.tlon(said),
+            Meaning::NurbsSiemens | Meaning::Nurbs | Meaning::Movnrb if self.cycle.take().is_some() => {
+                let message = "a spline within a cycle: CYCLE/OFF has to stand before it";
+                self.error("spline-in-cycle", message, said.span);
+                self.spline = Some(Spline::Refused);
+            }
             Meaning::NurbsSiemens => self.nurbs_siemens(said),
             Meaning::Nurbs => self.nurbs(said),
             Meaning::Knot | Meaning::Cntrl => {

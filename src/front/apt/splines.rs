@@ -41,6 +41,8 @@ pub(super) enum Spline {
     Nx(Nx),
     /// Creo.
     Creo(Creo),
+    /// One that was refused: what belongs to it is passed over, since one report is enough.
+    Refused,
 }
 
 /// A spline of CATIA.
@@ -83,20 +85,43 @@ fn assigned(arguments: &[Placed<'_>], name: &str) -> Option<f64> {
     arguments.iter().find_map(|placed| placed.argument.assigned(name))
 }
 
+/// The digits of `N12`, a point of CATIA's.
+fn point_number(major: &str) -> Option<&str> {
+    let digits = major.strip_prefix(['N', 'n'])?;
+    (!digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit())).then_some(digits)
+}
+
+/// Whether a spline of CATIA's ends: `END NURBS`.
+fn is_end(major: &str) -> bool {
+    let mut words = major.split_ascii_whitespace();
+    let mut next = |word: &str| words.next().is_some_and(|known| known.eq_ignore_ascii_case(word));
+    next("END") && next("NURBS") && words.next().is_none()
+}
+
 impl Reader<'_> {
     /// Meets a statement where a spline is read; whether it was part of it.
     pub(super) fn in_spline(&mut self, said: &Said<'_>) -> bool {
         match &mut self.spline {
             None => false,
+            Some(Spline::Refused) => {
+                let (major, numbered) = (said.statement.major, point_number(said.statement.major));
+                let ends = is_end(major);
+                let meaning = self.words.meaning(major);
+                if ends
+                    || !(numbered.is_some()
+                        || matches!(meaning, Some(Meaning::Knot | Meaning::Cntrl | Meaning::Movnrb)))
+                {
+                    self.spline = None;
+                }
+                ends || self.spline.is_some()
+            }
             Some(Spline::Siemens(_)) => {
                 let major = said.statement.major;
-                let digits = major.strip_prefix(['N', 'n']).unwrap_or_default();
-                if !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()) {
+                if let Some(digits) = point_number(major) {
                     self.siemens_point(said, digits);
                     return true;
                 }
-                let end = major.split_ascii_whitespace().collect::<Vec<_>>().join(" ");
-                if end.eq_ignore_ascii_case("END NURBS") {
+                if is_end(major) {
                     self.end_spline();
                     return true;
                 }
@@ -117,13 +142,13 @@ impl Reader<'_> {
                         nx.span.end = said.span.end;
                     }
                     (Some(Meaning::Cntrl), Some(numbers)) if numbers.len() == 6 => {
-                        self.spline = None;
+                        self.spline = Some(Spline::Refused);
                         let message =
                             "NURBS of five axes are not compiled: no public file shows how they are written";
                         self.refuse("tool-axis-tilted", message, said.span);
                     }
                     (Some(Meaning::Knot | Meaning::Cntrl), _) => {
-                        self.spline = None;
+                        self.spline = Some(Spline::Refused);
                         let message = "KNOT has numbers and stands before CNTRL, which has three";
                         self.error("nurbs-order", message, said.span);
                     }
@@ -148,32 +173,38 @@ impl Reader<'_> {
 
     /// `BEGIN NURBS_SIEMENS(D=3,F=1000,AXIS=0.00,0.00,1.00);`
     pub(super) fn nurbs_siemens(&mut self, said: &Said<'_>) {
+        self.spline = Some(self.siemens_header(said).map_or(Spline::Refused, Spline::Siemens));
+    }
+
+    fn siemens_header(&mut self, said: &Said<'_>) -> Option<Siemens> {
         let [Placed { argument: Argument::Group(header), .. }] = said.arguments() else {
-            return self.error(
-                "nurbs-header",
-                "BEGIN NURBS_SIEMENS has D, F and AXIS in parentheses",
-                said.span,
-            );
+            self.error("nurbs-header", "BEGIN NURBS_SIEMENS has D, F and AXIS in parentheses", said.span);
+            return None;
         };
         let header = &header.arguments;
         let (Some(degree), Some(feed)) = (assigned(header, "D"), assigned(header, "F")) else {
-            return self.error("nurbs-header", "BEGIN NURBS_SIEMENS states no D or no F", said.span);
+            self.error("nurbs-header", "BEGIN NURBS_SIEMENS states no D or no F", said.span);
+            return None;
         };
         if degree != 3.0 {
             let message = format!("D={degree}: knots of other degrees than 3 are not known");
-            return self.refuse("nurbs-degree", message, said.span);
+            self.refuse("nurbs-degree", message, said.span);
+            return None;
         }
         if !(0.0 < feed && feed.is_finite()) {
-            return self.error("feed-range", "F must be greater than zero", said.span);
+            self.error("feed-range", "F must be greater than zero", said.span);
+            return None;
         }
         if matches!(self.feed, Some(Feed::PerRevolution(_))) {
             let message =
                 "whether F counts a minute or a revolution where FEDRAT counts revolutions is not known";
-            return self.refuse("nurbs-revolutions", message, said.span);
+            self.refuse("nurbs-revolutions", message, said.span);
+            return None;
         }
         if self.scale != 1.0 {
             let message = "whether F counts inches in a file of inches is not known";
-            return self.refuse("nurbs-inches", message, said.span);
+            self.refuse("nurbs-inches", message, said.span);
+            return None;
         }
         let axis = header.iter().position(|placed| match placed.argument {
             Argument::Assigned(name, _) => name.eq_ignore_ascii_case("AXIS"),
@@ -197,7 +228,7 @@ impl Reader<'_> {
                 ],
             ) => {
                 if !self.keeps_axis([*i, *j, *k], said.span) {
-                    return;
+                    return None;
                 }
             }
             Some([Placed { argument: Argument::AssignedWord(..), .. }, ..]) if stated.is_some() => {
@@ -205,10 +236,11 @@ impl Reader<'_> {
             }
             Some(_) | None => {
                 let message = "AXIS is three numbers, or VAR with a LENGTH greater than zero behind it";
-                return self.error("nurbs-header", message, said.span);
+                self.error("nurbs-header", message, said.span);
+                return None;
             }
         }
-        self.spline = Some(Spline::Siemens(Siemens {
+        Some(Siemens {
             feed,
             length,
             points: Vec::new(),
@@ -216,7 +248,7 @@ impl Reader<'_> {
             increments: Vec::new(),
             weights: Vec::new(),
             span: said.span,
-        }));
+        })
     }
 
     /// `N1,XT=10.0,YT=0.0,ZT=0.0,DK=0.0,W=1.0;`
@@ -227,30 +259,30 @@ impl Reader<'_> {
         let Some(Spline::Siemens(spline)) = &mut self.spline else { return };
         let expected = spline.points.len();
         let (Some(x), Some(y), Some(z), Some(dk), Some(w)) = all else {
-            self.spline = None;
+            self.spline = Some(Spline::Refused);
             return self.error("nurbs-point", "a point has XT, YT, ZT, DK and W", said.span);
         };
         if index.parse() != Ok(expected) {
-            self.spline = None;
+            self.spline = Some(Spline::Refused);
             return self.error("nurbs-point", format!("here point N{expected} was expected"), said.span);
         }
         if !(0.0 <= dk) {
-            self.spline = None;
+            self.spline = Some(Spline::Refused);
             return self.error("knots-decrease", "DK is an increment and cannot be negative", said.span);
         }
         if !(0.0 < w && w.is_finite()) {
-            self.spline = None;
+            self.spline = Some(Spline::Refused);
             return self.error("weight-range", "W must be greater than zero", said.span);
         }
         if MAX_POINTS <= expected {
-            self.spline = None;
+            self.spline = Some(Spline::Refused);
             return self.error("nurbs-point", "the spline has too many points", said.span);
         }
         match (second, spline.length) {
             ((Some(xh), Some(yh), Some(zh)), Some(_)) => spline.directions.push([xh - x, yh - y, zh - z]),
             ((None, None, None), None) => {}
             _ => {
-                self.spline = None;
+                self.spline = Some(Spline::Refused);
                 let message = "XH, YH and ZH stand in every point under AXIS=VAR, and in none otherwise";
                 return self.error("nurbs-point", message, said.span);
             }
@@ -345,7 +377,7 @@ impl Reader<'_> {
     /// Ends a spline: it becomes a curve.
     pub(super) fn end_spline(&mut self) {
         match self.spline.take() {
-            None => {}
+            None | Some(Spline::Refused) => {}
             Some(Spline::Siemens(siemens)) => self.end_siemens(siemens),
             Some(Spline::Nx(nx)) => self.end_nx(nx),
             Some(Spline::Creo(creo)) => self.end_creo(creo),
