@@ -82,6 +82,14 @@ impl Curve {
         })
     }
 
+    /// The same curve with other coordinates beside X Y Z, which `map` must leave alone; none of a curve of which that is not known.
+    pub fn mapped_along(&self, stride: usize, map: impl Fn(&Position) -> Position) -> Option<Curve> {
+        if let Curve::Arc(arc) = self {
+            return Some(Curve::Arc(arc.mapped_along(map)));
+        }
+        self.mapped(stride, map)
+    }
+
     /// The greatest angle between the direction of the tool, in coordinates from `first` on, and an axis of length 1, radians;
     /// none of a curve that no input has in five axes. Between control points a direction is a sum of theirs, and in a cone
     /// about the axis that holds those.

@@ -48,20 +48,6 @@ fn directed(axis: &[f64; 3]) -> impl Iterator<Item = (usize, f64)> + use<> {
     (0..3).map(move |i| (AXES + i, axis[i]))
 }
 
-/// A curve of an upright tool, its direction stated.
-fn upright(curve: &Curve) -> Curve {
-    let place = |p: &Position| joined(&[p[0], p[1], p[2]], &UPRIGHT);
-    match curve {
-        Curve::Lines(line) => Curve::Lines(line.mapped(2 * AXES, place)),
-        Curve::Arc(arc) => Curve::Arc(arc.mapped_along(place)),
-        Curve::Nurbs(nurbs) => Curve::Nurbs(nurbs.mapped(place)),
-        // CL data has none of these.
-        Curve::Polynomial(_) | Curve::Through(..) | Curve::Logarithmic(_) | Curve::Formula(_) => {
-            curve.clone()
-        }
-    }
-}
-
 impl Builder {
     /// An empty program.
     pub(super) fn new() -> Builder {
@@ -94,10 +80,16 @@ impl Builder {
         if !self.five && axis != UPRIGHT {
             self.flush();
             self.five = true;
+            let place = |p: &Position| joined(&[p[0], p[1], p[2]], &UPRIGHT);
             for located in &mut self.steps {
                 match &mut located.step {
                     Step::Rapid(targets) => targets.extend(directed(&UPRIGHT)),
-                    Step::Cut(cut) => cut.curve = upright(&cut.curve),
+                    Step::Cut(cut) => {
+                        // CL data has no curve that this is not known of.
+                        if let Some(curve) = cut.curve.mapped_along(2 * AXES, place) {
+                            cut.curve = curve;
+                        }
+                    }
                     Step::Comment(_)
                     | Step::Tool(_)
                     | Step::Spindle(_)

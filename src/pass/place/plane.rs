@@ -79,9 +79,7 @@ pub(super) fn upright(intent: &mut Intent, machine: &Machine) {
         match &mut located.step {
             Step::Rapid(targets) => targets.retain(|(axis, _)| *axis < first),
             Step::Cut(cut) => {
-                if let Curve::Arc(arc) = &cut.curve {
-                    cut.curve = Curve::Arc(arc.mapped_along(place));
-                } else if let Some(curve) = cut.curve.mapped(PLACE, place) {
+                if let Some(curve) = cut.curve.mapped_along(PLACE, place) {
                     cut.curve = curve;
                 }
             }
