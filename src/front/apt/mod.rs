@@ -23,9 +23,10 @@
 //! | `statement` | a statement is a major word and arguments |
 //! | `words` | what a word means, as data |
 //! | `reader` | what statements mean, one after the other: modes end here |
-//! | `technology`, `motion`, `arcs`, `cycles`, `splines`, `directions`, `remarks` | its parts |
+//! | `technology`, `motion`, `arcs`, `points`, `tangents`, `cycles`, `splines`, `directions`, `remarks` | its parts |
 //! | `systems` | one file a CAM system: how it is recognised, and what it does differently |
 //! | `program` | moves become the steps of a program |
+//! | `running` | whether a tool, the spindle and the coolant are there where something is cut |
 //!
 //! Positions stand in the frame that the file states; the frame is written down in a remark and never applied.
 //! A word that is not understood is an error, or with `lenient` a warning; nothing is dropped in silence.
