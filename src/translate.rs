@@ -210,6 +210,11 @@ impl Translation<'_> {
             }
             Step::Cut(Cut { feed, curve, .. }) => {
                 self.feed_is_told(curve, located.span)?;
+                let timed = matches!(curve, Written::Lines(points) if !points.rates.is_empty());
+                if feed.is_none() && !timed {
+                    let message = "no F was stated before this cut";
+                    return Err(Diagnostic::error("feed-missing", message).at(located.span, "").into());
+                }
                 let feed = feed.map(Decimal::to_f64);
                 let (role, curve) = self.curve(curve, located.span)?;
                 Step::Cut(Cut { feed, role, curve })

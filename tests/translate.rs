@@ -157,3 +157,37 @@ fn a_program_without_a_number_gets_one_where_one_is_wanted() {
     let output = program(&start.text, &mazak, &mazak, None).unwrap_or_else(|e| panic!("{e:?}"));
     assert_eq!(output.text.lines().nth(1), Some("O4711"));
 }
+
+/// Two tools, each with a rapid to its place and a cut from there.
+const TOOLS: &str = "UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nFEDRAT/200,MMPM\nRAPID\nGOTO/0,0,10\nGOTO/0,0,-1\nGOTO/20,0,-1\nRAPID\n\
+    GOTO/20,0,30\nLOADTL/2\nSPINDL/900,CLW\nRAPID\nGOTO/50,0,7\nGOTO/65,5,7\nRAPID\nGOTO/65,5,30\nFINI\n";
+
+/// Behind its home nobody knows where Z is until a word says it: no cut, and no other program, may assume a place.
+#[test]
+fn what_a_program_does_not_say_is_not_made_up() {
+    for (name, down, refused) in [
+        ("sinumerik", "Z7", "place-unknown"),
+        ("heidenhain", "L Z+7 R0 FMAX", "place-unknown"),
+        ("mazak", "G43 H2 Z7.", "tool-offset-missing"),
+    ] {
+        let own = built_in(name);
+        let text = first(TOOLS, "apt", &own, None).text;
+        assert!(program(&text, &own, &own, None).is_ok());
+        let bare: String =
+            text.split_inclusive('\n').filter(|line| !line.trim_end().ends_with(down)).collect();
+        assert_eq!(bare.lines().count() + 1, text.lines().count(), "{text}");
+        let errors = program(&bare, &own, &own, None).map(|output| output.text).expect_err("no place");
+        assert_eq!(errors.0[0].id, refused, "{name}: {errors:?}");
+        // Nor is a feed.
+        let feedless: String =
+            text.split_inclusive('\n').map(|line| line.replace(" F200.", "").replace(" F200", "")).collect();
+        let errors = program(&feedless, &own, &own, None).map(|output| output.text).expect_err("no feed");
+        assert_eq!(errors.0[0].id, "feed-missing", "{name}: {errors:?}");
+    }
+    let mazak = built_in("mazak");
+    let text = first(TOOLS, "apt", &mazak, None).text;
+    let ended = text.replace("G1 X65.", "G1 G49 X65.");
+    assert_ne!(ended, text);
+    let errors = program(&ended, &mazak, &mazak, None).map(|output| output.text).expect_err("no length");
+    assert_eq!(errors.0[0].id, "tool-offset");
+}

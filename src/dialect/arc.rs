@@ -162,7 +162,7 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
         return assembler.error("arc-center", "an arc without its centre in I J K", range());
     }
     let end = assembler.target(said.named);
-    let start: Units = assembler.start(&end, said.span);
+    let start: Units = assembler.start(said.named, &end, said.span);
     let reversed = assembler.machine.reversed();
     let mut center = [0; 2];
     for (center, i) in center.iter_mut().zip([u, v]) {

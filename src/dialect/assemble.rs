@@ -66,6 +66,8 @@ pub struct Assembler<'m> {
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.
     unknown: Option<([bool; MAX_AXES], Span)>,
+    /// The first cut in which each axis is nowhere known and not named.
+    missing: [Option<Span>; MAX_AXES],
     /// How many arcs end beside their circle by more than rounding, and by how much and where the worst of them, mm.
     misfits: Option<(usize, f64, Span)>,
 }
@@ -104,6 +106,7 @@ impl<'m> Assembler<'m> {
             led: false,
             named: [false; MAX_AXES],
             unknown: None,
+            missing: [None; MAX_AXES],
             misfits: None,
         }
     }
@@ -239,8 +242,14 @@ impl<'m> Assembler<'m> {
 
     /// The position where all axes are known; unknown ones from `fallback`. There is a warning in the end where a cut names
     /// such an axis: others stand wherever they are.
-    pub fn start(&mut self, fallback: &Units, span: Span) -> Units {
+    pub fn start(&mut self, named: &[(usize, i64)], fallback: &Units, span: Span) -> Units {
         let count = self.machine.axes.count();
+        // A direction is stated or not in force.
+        for i in 0..self.machine.axes.direction().unwrap_or(count) {
+            if self.position[i].is_none() && !named.iter().any(|(axis, _)| *axis == i) {
+                self.missing[i] = self.missing[i].or(Some(span));
+            }
+        }
         if self.unknown.is_none() && self.position[..count].contains(&None) {
             self.unknown = Some((self.position.map(|place| place.is_none()), span));
         }
@@ -350,7 +359,7 @@ impl<'m> Assembler<'m> {
             self.flush();
         }
         if self.run.is_none() {
-            let start = self.start(&target, span);
+            let start = self.start(named, &target, span);
             self.run_feed = feed;
             self.run = Some((
                 WrittenPoints { start, stride, units: Vec::new(), lines: Vec::new(), rates: Vec::new() },
@@ -387,12 +396,36 @@ impl<'m> Assembler<'m> {
         self.misfits = Some((count + 1, worst, at));
     }
 
+    /// Refuses cuts in which an axis of the program is nowhere known: at its home, or before anything named it. Where it is then
+    /// only the machine knows, and no other program could go there.
+    fn nowhere(&mut self) {
+        let mut named = self.named;
+        for located in &self.steps {
+            if let Step::Rapid(targets) = &located.step {
+                for (axis, _) in targets {
+                    named[*axis] = true;
+                }
+            }
+        }
+        let first = (0..MAX_AXES).filter(|i| named[*i]).filter_map(|i| Some((self.missing[i]?, i)));
+        if let Some((span, axis)) = first.min_by_key(|(span, _)| span.start) {
+            let message =
+                format!("where {} is in this cut the text does not say", self.machine.axes.name(axis));
+            self.diagnostics.push(
+                Diagnostic::error("place-unknown", message)
+                    .at(span, "")
+                    .hint("nothing named it yet, or it went to its home: a rapid before says where it is"),
+            );
+        }
+    }
+
     /// The program, or what is wrong with it.
     ///
     /// # Errors
     /// The diagnostics hold one.
     pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
         self.flush();
+        self.nowhere();
         if let Some((unknown, span)) = self.unknown
             && (0..MAX_AXES).any(|i| unknown[i] && self.named[i])
         {

@@ -35,7 +35,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
         }
     }
     let machine = directions(&mut intent, machine)?;
-    homes(&mut intent, &machine);
+    homes(&mut intent, &machine)?;
     if intent.program.axes.direction().is_none() {
         over_the_work(&mut intent, machine.orientation.plane_approach);
     }
@@ -64,7 +64,32 @@ fn directions(intent: &mut Intent, machine: &Machine) -> Result<Machine, Diagnos
 }
 
 /// Leaves out retractions to a home that the machine file does not state.
-fn homes(intent: &mut Intent, machine: &Machine) {
+///
+/// # Errors
+/// A tool begins with a cut, and nothing says where it is clear before.
+fn homes(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
+    let three = intent.program.axes.direction().is_none();
+    let mut nowhere = false;
+    for located in &intent.program.steps {
+        match &located.step {
+            Step::Home(axis) => nowhere = !machine.retracts(*axis),
+            Step::Rapid(_) => nowhere = false,
+            Step::Cut(_) if nowhere && three => {
+                let message = "the first move of this tool cuts, and the machine file states no place in Z from which it could come";
+                return Err(Diagnostic::refusal("home-missing", message)
+                    .at(located.span, "")
+                    .hint("[axis.Z] home of the machine file, or a rapid before the cut")
+                    .into());
+            }
+            Step::Cut(_) => nowhere = false,
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
     intent.program.steps.retain(|located| match located.step {
         Step::Home(axis) => machine.retracts(axis),
         Step::Comment(_)
@@ -76,6 +101,7 @@ fn homes(intent: &mut Intent, machine: &Machine) {
         | Step::Rapid(_)
         | Step::Cut(_) => true,
     });
+    Ok(())
 }
 
 /// From its home the tool goes over the work before it goes down. A rapid that brings an axis from its home brings the others

@@ -1,6 +1,6 @@
 //! What stands behind a circle, between it and its end, and beside a start tangent.
 
-use super::{intent_as, program};
+use super::intent_as;
 use splinepost::diagnostic::{Diagnostics, Severity};
 use splinepost::geom::elementary;
 use splinepost::ir::{Curve, Intent, Step};
@@ -55,30 +55,51 @@ fn one(system: &str, body: &str) -> (f64, usize, Vec<&'static str>) {
     ((sweeps[0] * 100.0).round() / 100.0, lines, warnings(&intent))
 }
 
-/// Another arc with points before its end, and back to where `CIRCLE` starts.
-const ANOTHER: &str =
-    "GOTO/130,0,0\nCIRCLE/130,10,0,0,0,1,10\nGOTO/137.071,2.929,0\nGOTO/140,10,0\nGOTO/30,0,0\n";
+/// The text of a body, with a shop's word on the points of its arcs.
+fn shop(points: &str, body: &str) -> Sources {
+    let mut sources = Sources::new(Source::new("input.ncl", format!("{HEAD}{body}\nFINI\n")));
+    let table = format!("extends = \"creo\"\ncircle_points = \"{points}\"\n");
+    sources.words = Some(sources.push(Source::new("shop.toml", table)));
+    sources
+}
+
+fn stated(points: &str, body: &str) -> Result<Intent, Diagnostics> {
+    (front::find("creo").expect("creo").parse)(&shop(points, body))
+}
+
+/// The sweep of the only arc and the lines behind it, where points are stated to be along arcs; without that word they are none.
+fn along(body: &str) -> (f64, usize) {
+    assert_eq!(errors("creo", body), ["arc-points"], "{body}");
+    let intent = stated("along", body).unwrap_or_else(|e| panic!("{body}: {e:?}"));
+    assert!(intent.warnings.0.is_empty(), "{body}: {:?}", intent.warnings);
+    let (sweeps, lines) = arcs(&intent);
+    assert_eq!(sweeps.len(), 1, "{body}");
+    ((sweeps[0] * 100.0).round() / 100.0, lines)
+}
 
 #[test]
 fn the_points_behind_a_circle_of_creo_are_on_its_arc() {
-    let creo = |points: &str| {
-        // A file in which one arc alone looks like it shows nothing.
-        let lone = format!("{CIRCLE}{points}");
-        assert_eq!(errors("creo", &lone), ["arc-points"], "{points}");
-        let intent = read("creo", &format!("{ANOTHER}{lone}")).unwrap_or_else(|e| panic!("{points}: {e:?}"));
-        let (sweeps, lines) = arcs(&intent);
-        let &[first, second] = &sweeps[..] else { panic!("{points}: {sweeps:?}") };
-        assert!((first - 90.0).abs() < 0.01);
-        let warnings = warnings(&intent);
-        assert_eq!(warnings[0], "arc-points");
-        ((second * 100.0).round() / 100.0, lines, warnings[1..].to_vec())
-    };
-    assert_eq!(creo("GOTO/37.071,2.929,0\nGOTO/40,10,0"), (90.0, 0, vec!["arc-points"]));
+    let creo = |points: &str| along(&format!("{CIRCLE}{points}"));
+    assert_eq!(creo("GOTO/37.071,2.929,0\nGOTO/40,10,0"), (90.0, 0));
     // Round once, and away.
     let round = "GOTO/40,10,0\nGOTO/20,10,0\nGOTO/30,0,0\n";
-    assert_eq!(creo(&format!("{round}GOTO/30,0,9\nGOTO/0,0,9")), (360.0, 2, vec!["arc-points"]));
+    assert_eq!(creo(&format!("{round}GOTO/30,0,9\nGOTO/0,0,9")), (360.0, 2));
     // A helix whose points rise with it, and a line behind it that does not.
-    assert_eq!(creo("GOTO/40,10,-1\nGOTO/30,20,-2\nGOTO/20,10,-5"), (180.0, 1, vec!["arc-points"]));
+    assert_eq!(creo("GOTO/40,10,-1\nGOTO/30,20,-2\nGOTO/20,10,-5"), (180.0, 1));
+    // Half moons, at however many depths, are not made whole.
+    let moon = |z: i32| format!("GOTO/30,0,{z}\nCIRCLE/30,10,{z},0,0,1,10\nGOTO/30,20,{z}\nGOTO/30,0,{z}\n");
+    assert!(errors("creo", &[moon(-1), moon(-2), moon(-3)].concat()).contains(&"arc-points"));
+    // A feed or a remark among the points: one of two arcs, or a line, and nobody knows.
+    for between in ["FEDRAT/100,MMPM", "$$ NOTE"] {
+        let body = format!("{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\n{between}\nGOTO/30,20,0");
+        let found = stated("along", &body).expect_err("a chord");
+        assert_eq!(found.0[0].id, "arc-points", "{between}");
+    }
+    // A short line that leaves along the tangent is within 0.01 mm of the circle, and a line.
+    assert_eq!(
+        one("creo", &format!("{CIRCLE}GOTO/40,10,0\nGOTO/40,10.4,0\nGOTO/60,10.4,0")),
+        (90.0, 2, vec![])
+    );
     // Points so near that lines would be the same path are no question.
     let near: Vec<String> = (1..=90)
         .map(|i| {
@@ -90,15 +111,10 @@ fn the_points_behind_a_circle_of_creo_are_on_its_arc() {
     let near = near.join("\n");
     assert_eq!(one("creo", &format!("{CIRCLE}{near}")), (90.0, 0, vec![]));
     // The other sense, and another plane.
-    let with = |body: &str| {
-        let intent = read("creo", &format!("{ANOTHER}{body}")).unwrap_or_else(|e| panic!("{body}: {e:?}"));
-        let (sweeps, lines) = arcs(&intent);
-        (sweeps[1].round(), lines)
-    };
     let other = "CIRCLE/30,10,0,0,0,-1,10\nGOTO/22.92893,2.92893,0\nGOTO/20,10,0\nGOTO/20,50,0";
-    assert_eq!(with(other), (-90.0, 1));
+    assert_eq!(along(other), (-90.0, 1));
     let upright = "CIRCLE/30,0,10,0,-1,0,10\nGOTO/37.07107,0,2.92893\nGOTO/40,0,10";
-    assert_eq!((with(upright).0.abs(), with(upright).1), (90.0, 0));
+    assert_eq!((along(upright).0.abs(), along(upright).1), (90.0, 0));
 }
 
 #[test]
@@ -146,17 +162,11 @@ fn a_file_shows_whether_its_arcs_have_points() {
     let body = [&*alone, "$$-> FEATNO / 7\n", &half_moon].concat();
     assert_eq!(errors("creo", &body), ["arc-points"]);
     // A shop says what it is.
-    let stated = |points: &str| {
-        let mut sources = Sources::new(Source::new("input.ncl", format!("{HEAD}{body}FINI\n")));
-        let table = format!("extends = \"creo\"\ncircle_points = \"{points}\"\n");
-        sources.words = Some(sources.push(Source::new("shop.toml", table)));
-        (front::find("creo").expect("creo").parse)(&sources)
-    };
     for (points, sweep) in [("end", 90.0), ("along", 180.0)] {
-        let intent = stated(points).unwrap_or_else(|e| panic!("{points}: {e:?}"));
+        let intent = stated(points, &body).unwrap_or_else(|e| panic!("{points}: {e:?}"));
         assert_eq!((arcs(&intent).0[1].round(), warnings(&intent).len()), (sweep, 0), "{points}");
     }
-    assert_eq!(stated("some").expect_err("some").0[0].id, "word-unknown");
+    assert_eq!(stated("some", &body).expect_err("some").0[0].id, "word-unknown");
 }
 
 #[test]
@@ -177,14 +187,16 @@ fn other_systems_end_a_circle_at_its_first_point() {
 /// The arc is one block, and proved.
 #[test]
 fn an_arc_with_points_is_one_block() {
-    let text = format!("{HEAD}{ANOTHER}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nGOTO/40,60,0\nFINI\n");
+    let body = format!("{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nGOTO/40,60,0");
     for (name, block) in [
-        ("mazak", "G3 X40. Y10. I0. J10."),
+        ("mazak", "G17 G3 X40. Y10. I0. J10."),
         ("sinumerik", "G3 X40 Y10 I0 J10"),
         ("heidenhain", "C X+40 Y+10 DR+"),
     ] {
         let machine = Machine::built_in(name).expect("a default machine");
-        let output = program("creo", &text, &machine).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let creo = front::find("creo").expect("creo");
+        let output = compile(&shop("along", &body), creo, &machine, &Options::default())
+            .unwrap_or_else(|f| panic!("{name}: {f:?}"));
         assert!(output.text.contains(block), "{}", output.text);
         assert!(output.report.expect("a proof").deviation.mm <= 1e-3);
     }
@@ -346,14 +358,13 @@ fn a_start_tangent_is_one() {
     }
 }
 
-/// The words of a shop reach the program.
 #[test]
-fn what_is_warned_of_points_to_its_place() {
-    let text = format!("{HEAD}{ANOTHER}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nFINI\n");
-    let sources = Sources::new(Source::new("input.ncl", text));
-    let machine = Machine::built_in("mazak").expect("mazak");
-    let output = compile(&sources, front::find("creo").expect("creo"), &machine, &Options::default())
-        .unwrap_or_else(|f| panic!("{f:?}"));
-    let drawn = output.intent.warnings.render(&sources, false);
-    assert!(drawn.contains("input.ncl:9:1") && drawn.contains("circle_points"), "{drawn}");
+fn what_is_refused_points_to_its_place() {
+    let sources = Sources::new(Source::new(
+        "input.ncl",
+        format!("{HEAD}{CIRCLE}GOTO/37.071,2.929,0\nGOTO/40,10,0\nFINI\n"),
+    ));
+    let errors = (front::find("creo").expect("creo").parse)(&sources).expect_err("points");
+    let drawn = errors.render(&sources, false);
+    assert!(drawn.contains("input.ncl:8:1") && drawn.contains("circle_points"), "{drawn}");
 }

@@ -419,6 +419,10 @@ fn a_tool_that_was_changed_is_nowhere_known() {
             program("iso", &input, &machine(&format!("extends = \"{dialect}\""))).expect("a program").text;
         assert!(text.contains(block), "{text}");
     }
+    // Without a home it would come from wherever the changer left it.
+    let homeless = machine("extends = \"sinumerik\"\n[program]\nhome = []\n");
+    let errors = program("iso", &input, &homeless).map(|output| output.text).expect_err("no home");
+    assert_eq!(errors.0[0].id, "home-missing");
     // Without the word its length holds nowhere.
     let mazak = machine("extends = \"mazak\"");
     let text = program("iso", &input, &mazak).expect("a program").text;

@@ -536,7 +536,7 @@ impl<'t> Reader<'t, '_> {
         }
         let end = self.assembler.target(block.named());
         if self.run.is_none() {
-            let start = self.assembler.start(&end, span);
+            let start = self.assembler.start(block.named(), &end, span);
             self.run = Some(Run { polynomial: WrittenPolynomial { start, blocks: Vec::new() }, span });
         }
         if let Some(run) = &mut self.run {

@@ -402,6 +402,10 @@ impl Reader<'_> {
                 let message = "G49 ends leading the tip, with the lines of the machine file";
                 return self.error("tip-control", message, range);
             }
+            Some(490) if self.offset_tool.is_some() => {
+                let message = "G49 ends the length of the tool, with the lines of the machine file";
+                return self.error("tool-offset", message, range);
+            }
             Some(tenths) if STATE_CODES.contains(&tenths) => return,
             _ => {
                 let refused = REFUSED_CODES.iter().find(|(code, _)| Some(*code) == tenths);
@@ -534,7 +538,8 @@ impl Reader<'_> {
 
     fn through_block(&mut self, block: &Block, line: u32, span: Span) {
         let target = self.assembler.target(block.named());
-        let start = if self.run.is_none() { self.assembler.start(&target, span) } else { target };
+        let start =
+            if self.run.is_none() { self.assembler.start(block.named(), &target, span) } else { target };
         for (axis, units) in block.named() {
             self.assembler.position[*axis] = Some(*units);
         }

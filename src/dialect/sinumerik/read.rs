@@ -443,7 +443,7 @@ impl Reader<'_> {
     fn spline_block(&mut self, block: &Block, line: u32, span: Span) {
         let target = self.assembler.target(block.named());
         if self.run.is_none() {
-            let start = self.assembler.start(&target, span);
+            let start = self.assembler.start(block.named(), &target, span);
             self.run = Some(Run {
                 motion: self.motion,
                 start,

@@ -15,7 +15,8 @@
 //!
 //! How many points an arc has is a parameter of an operation: at least so many, or as many as hold a tolerance. So an
 //! operation in which one arc has its end alone, far from its chord, writes none before the end of any other. That is
-//! looked for before the file is read; where no arc says it, the points are of the arc, with a warning.
+//! looked for before the file is read; where no arc says it, points so dense that lines would do are of the arc, and others
+//! are refused.
 
 use super::arcs::{Circle, FULL_CHORD, MISFIT_REFUSED};
 use super::motion::Pending;
@@ -32,6 +33,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Half a turn, and what rounding adds to it, radians: no arc needs fewer points, where it has them.
 const HALF: f64 = PI + 1.0e-6;
+
+/// How far rounding brings a point from its circle, mm: that of three decimals and more.
+const ROUNDED: f64 = 0.001;
 
 /// What to state where a file does not say which of its points are on arcs.
 const HINT: &str = "circle_points = \"end\" in a table for --words ends every circle at its first point, \"along\" takes those that lie on it";
@@ -63,6 +67,8 @@ struct Step {
     turn: f64,
     last: [f64; 2],
     rise: f64,
+    /// How far the point is from the circle, mm.
+    beside: f64,
 }
 
 /// An arc whose points are being read.
@@ -91,7 +97,8 @@ impl Ring {
     fn step(&self, point: [f64; 3]) -> Option<Step> {
         let [u, v, w] = self.frame.local(point);
         let ([x, y], [x0, y0]) = ([u - self.center[0], v - self.center[1]], self.last);
-        if !((x * x + y * y).sqrt() - self.radius).abs().le(&MISFIT_REFUSED) {
+        let beside = ((x * x + y * y).sqrt() - self.radius).abs();
+        if !beside.le(&MISFIT_REFUSED) {
             return None;
         }
         let (turned, risen) = self.places.last().copied().unwrap_or((0.0, 0.0));
@@ -115,7 +122,7 @@ impl Ring {
         if turned != 0.0 && MISFIT_REFUSED < (rise - risen * ((turned + turn) / turned)).abs() {
             return None;
         }
-        Some(Step { turn, last: [x, y], rise })
+        Some(Step { turn, last: [x, y], rise, beside })
     }
 
     /// How far the chord of a step is from the arc, mm.
@@ -194,7 +201,7 @@ impl Reader<'_> {
         match reading {
             Reading::End => self.arc_to(&points.circle, point, span),
             Reading::Unsure => self.end_points(points),
-            Reading::Alone | Reading::Along | Reading::Likely | Reading::Once | Reading::Mixed => {
+            Reading::Alone | Reading::Along | Reading::Likely | Reading::Mixed => {
                 self.pending = Some(Pending::Points(points));
             }
         }
@@ -202,8 +209,16 @@ impl Reader<'_> {
 
     /// One more point behind a circle: whether it is of the arc. Where it is not, the arc is over.
     pub(super) fn points_meet(&mut self, mut points: Points, point: [f64; 3], span: Span) -> bool {
-        let alone = points.listed || self.reading(&points.circle) == Reading::Alone;
-        let Some(step) = points.ring.goes_on(point).filter(|_| !alone) else {
+        let reading = self.reading(&points.circle);
+        let alone = points.listed || reading == Reading::Alone;
+        // A short line that leaves the circle along its tangent is near it too, and moves nothing where it stays a line.
+        let fits = |step: &Step| {
+            reading == Reading::Along
+                || step.beside <= ROUNDED
+                || MISFIT_REFUSED < points.ring.sagitta(step.turn)
+        };
+        let step = points.ring.goes_on(point).filter(|step| !alone && fits(step));
+        let Some(step) = step else {
             self.end_points(points);
             return false;
         };
@@ -269,7 +284,6 @@ impl Reader<'_> {
         self.arc_to(&circle, end, span);
         if let Some(Pending::Left(left)) = &mut self.pending
             && !listed
-            && reading != Reading::Along
         {
             left.ring = Some((ring, reading));
         }
@@ -282,13 +296,7 @@ impl Reader<'_> {
             Reading::End | Reading::Alone | Reading::Along | Reading::Unsure => {}
             Reading::Likely => {
                 let message = format!(
-                    "{count} points behind this circle are on it, and the last is taken as its end: lines would look the same"
-                );
-                self.push(Diagnostic::warning("arc-points", message).at(span, "").hint(HINT));
-            }
-            Reading::Once => {
-                let message = format!(
-                    "{count} points behind this circle are on it, on its arc or behind it: no other arc of the file shows which"
+                    "{count} points behind this circle are on it, on its arc or lines behind it: no arc of the file shows which"
                 );
                 self.push(Diagnostic::error("arc-points", message).at(span, "").hint(HINT));
             }
@@ -306,7 +314,14 @@ impl Reader<'_> {
         let Some(step) = ring.step(to).filter(|step| MISFIT_REFUSED < ring.sagitta(step.turn)) else {
             return;
         };
-        if reading == Reading::Unsure && step.turn.max(ring.widest) <= HALF {
+        if reading == Reading::Along {
+            let message = "this point goes on along the arc before it, and something stands between them";
+            self.push(
+                Diagnostic::error("arc-points", message)
+                    .at(span, "")
+                    .hint("the points of an arc follow each other: move what stands between them"),
+            );
+        } else if reading == Reading::Unsure && step.turn.max(ring.widest) <= HALF {
             let message =
                 "this point is on the circle before it: the end of that arc, or of a line behind it";
             self.push(
@@ -343,8 +358,6 @@ pub(super) enum Reading {
     Along,
     /// The same, and nothing in the file speaks against it.
     Likely,
-    /// The same, and no other arc in the file speaks for it.
-    Once,
     /// The same in this operation, and elsewhere in the file not.
     Mixed,
     /// Nobody knows.
@@ -356,14 +369,12 @@ pub(super) enum Reading {
 pub(super) struct Survey {
     /// Where each operation begins, and whether an arc of it has its end alone.
     operations: Vec<(usize, bool)>,
-    /// How many arcs have points before their end, or lines behind it that look like them, and far from lines.
-    several: usize,
 }
 
 impl Survey {
     /// Looks at all circles of a text, where its system may write points before their end.
     pub(super) fn of(text: &str, words: &Words) -> Survey {
-        let mut survey = Survey { operations: vec![(0, false)], several: 0 };
+        let mut survey = Survey { operations: vec![(0, false)] };
         if words.points != ArcPoints::Likely {
             return survey;
         }
@@ -434,7 +445,6 @@ impl Survey {
     fn settle(&mut self, ring: Option<Ring>) {
         if let (Some(ring), Some((_, alone))) = (ring, self.operations.last_mut()) {
             *alone |= ring.is_single();
-            self.several += usize::from(ring.matters());
         }
     }
 
@@ -445,8 +455,6 @@ impl Survey {
             Reading::Alone
         } else if self.operations.iter().any(|(_, alone)| *alone) {
             Reading::Mixed
-        } else if self.several < 2 {
-            Reading::Once
         } else {
             Reading::Likely
         }

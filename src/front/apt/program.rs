@@ -268,16 +268,12 @@ impl Builder {
 
     /// Where positions count in another frame from here on, the operator sets it: the tool is brought away, the program stops, and
     /// starts again with the call of its tool. Where the tool is in the new frame nobody knows.
-    pub(super) fn reframed(&mut self, span: Span) {
-        if let Some(tool) = self.running.called() {
-            self.step(Step::Home(Z), span);
-            self.step(Step::Auxiliary(Auxiliary::Stop), span);
-            self.step(Step::Tool(tool), span);
-            for step in self.running.again() {
-                self.step(step, span);
-            }
-        } else {
-            self.step(Step::Auxiliary(Auxiliary::Stop), span);
+    pub(super) fn reframed(&mut self, tool: u32, span: Span) {
+        self.step(Step::Home(Z), span);
+        self.step(Step::Auxiliary(Auxiliary::Stop), span);
+        self.step(Step::Tool(tool), span);
+        for step in self.running.again() {
+            self.step(step, span);
         }
         self.running.reframed();
         self.told = false;

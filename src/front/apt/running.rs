@@ -77,11 +77,6 @@ impl Running {
         }
     }
 
-    /// The tool that was called last.
-    pub(super) fn called(&self) -> Option<u32> {
-        self.tool
-    }
-
     /// What has to be said again behind a second call of the same tool.
     pub(super) fn again(&self) -> Vec<Step<f64, Curve>> {
         let spindle = match self.spindle {
@@ -159,7 +154,7 @@ fn first_cut(new: New, tool: Option<u32>) -> Diagnostic {
         New::Tool => {
             let tool = tool.unwrap_or_default();
             let message = format!(
-                "tool {tool} begins with a cut: over where that starts it comes down from its home, at its feed"
+                "tool {tool} begins with a cut: from its home it goes over where that starts, and down at its feed"
             );
             Diagnostic::warning("cut-first", message)
         }

@@ -35,7 +35,7 @@ impl Reader<'_, '_> {
             self.assembler.feed = block.feed;
         }
         let end = self.assembler.target(block.named());
-        let start = self.assembler.start(&end, span);
+        let start = self.assembler.start(block.named(), &end, span);
         let sense = arc::counted_sense(self.assembler.machine, Plane::Xy, sense);
         let by = ArcBy::Center(Circle { plane: Plane::Xy, sense, center }, 0);
         let arc = WrittenArc { start, end, by, line };
@@ -113,7 +113,7 @@ impl Reader<'_, '_> {
             self.assembler.feed = block.feed;
         }
         let mut end = self.assembler.target(&[]);
-        let start = self.assembler.start(&end, span);
+        let start = self.assembler.start(&[], &end, span);
         let sense = arc::counted_sense(self.assembler.machine, Plane::Xy, sense);
         let digits = self.assembler.digits;
         let Some(height) = start[2].checked_add(block.rise.unwrap_or(0)) else {

@@ -59,7 +59,7 @@ impl Reader<'_> {
         let whole = span.start as usize..span.end as usize;
         let mut broken = false;
         let target = self.assembler.target(block.named());
-        let start = self.assembler.start(&target, span);
+        let start = self.assembler.start(block.named(), &target, span);
         let mut axes = [false; MAX_AXES];
         let mut mismatch = None;
         for ((axis, units), place) in block.named().iter().zip(block.places) {

@@ -70,7 +70,7 @@ impl Reader<'_> {
             return self.assembler.error("arc-way", message, whole);
         };
         let end = self.assembler.target(block.named());
-        let start = self.assembler.start(&end, span);
+        let start = self.assembler.start(block.named(), &end, span);
         let mut way = start;
         (way[0], way[1], way[2]) = (x, y, z);
         let arc = WrittenArc { start, end, by: ArcBy::Way(way), line };
