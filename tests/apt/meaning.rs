@@ -251,3 +251,21 @@ fn arcs_on_an_axis_that_counts_the_other_way() {
         }
     }
 }
+
+/// Where the frame changes the tool is at home when the program stops, and is called again unless another one is.
+#[test]
+fn a_changed_frame_stops_with_the_tool_at_home() {
+    let frame = "MSYS/0,0,20,1,0,0,0,-1,0\n";
+    let body = |next: &str| {
+        let text = format!(
+            "UNITS/MM\nMSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\nSPINDL/RPM,900,CLW\nCOOLNT/ON\nFEDRAT/MMPM,200\nRAPID\nGOTO/0,0,9\n\
+             GOTO/0,0,-1\n{frame}{next}RAPID\nGOTO/0,0,9\nGOTO/0,0,-2\nFINI\n"
+        );
+        splinepost::dump::intent(&intent_as("nx", &text, false).expect("it reads"))
+    };
+    let again = body("");
+    assert!(again.contains("home Z\nstop\ntool 1\nspindle 900\ncoolant\nrapid X 0 Y 0 Z 9\n"), "{again}");
+    let other = body("LOAD/TOOL,2\nSPINDL/ON\nCOOLNT/ON\n");
+    assert!(other.contains("home Z\nstop\ntool 2\nspindle 900\ncoolant\nrapid X 0"), "{other}");
+    assert_eq!((again.matches("tool 1").count(), other.matches("tool 1").count()), (2, 1));
+}

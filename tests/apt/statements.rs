@@ -136,6 +136,8 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("catia", "^ORIGIN/0,0,60", Read("comment FRAME ORIGIN 0 0 60\n")),
     ("nx", "MSYS/0,0,20,1,0,0,0,-1,0\nRAPID\nGOTO/0,0,10", Warned("frame-changes")),
     ("nx", "MSYS/0,0,20,1,0,0,0,-1,0", Refused("frame-cut")),
+    // The stop stands where the tool is at home anyway.
+    ("nx", "MSYS/0,0,20,1,0,0,0,-1,0\nLOAD/TOOL,2\nSPINDL/ON\nRAPID\nGOTO/0,0,10", Warned("frame-changes")),
     ("nx", "^RAPID\nGOTO/0,0,90\nMSYS/0,0,20,1,0,0,0,-1,0", Refused("frame-tool")),
     ("nx", "^MSYS/0,0,20,1,0,0,0,-1,0", Read("comment FRAME MSYS 0 0 20 1 0 0 0 -1 0\n")),
     ("solidworks", "^CSYS/1,0,0,0,0,1,0,0,0,0,1,0", Read("comment FRAME CSYS 1 0 0 0 0 1 0 0 0 0 1 0\n")),

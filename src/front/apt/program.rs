@@ -35,6 +35,8 @@ pub(super) struct Builder {
     /// Whether the tool was ever tilted, so that every place has its direction too.
     five: bool,
     running: Running,
+    /// Where the frame changed, if the program has not stopped for that yet.
+    stop_due: Option<Span>,
 }
 
 /// A tip and a direction in six places.
@@ -61,6 +63,7 @@ impl Builder {
             stood: UPRIGHT,
             five: false,
             running: Running::default(),
+            stop_due: None,
         }
     }
 
@@ -161,7 +164,9 @@ impl Builder {
     /// Calls a tool.
     pub(super) fn tool(&mut self, number: u32, span: Span) {
         // CAM systems leave it to the post to bring the tool away before it is changed.
-        self.step(Step::Home(Z), span);
+        if self.stop().is_none() {
+            self.step(Step::Home(Z), span);
+        }
         self.step(Step::Tool(number), span);
         self.running.tool(number);
         self.told = false;
@@ -192,6 +197,12 @@ impl Builder {
 
     /// Goes to a point at rapid: all axes where a control may have forgotten them, otherwise those that move.
     pub(super) fn rapid(&mut self, to: &[f64; AXES], span: Span) {
+        if let Some(span) = self.stop() {
+            // The program starts again with the call of its tool.
+            for step in self.running.again() {
+                self.step(step, span);
+            }
+        }
         let known = self.position.filter(|_| self.told);
         let mut targets: Vec<(usize, f64)> =
             (0..AXES).filter(|&i| known.is_none_or(|from| from[i] != to[i])).map(|i| (i, to[i])).collect();
@@ -266,18 +277,21 @@ impl Builder {
         self.stood = self.axis;
     }
 
-    /// Where positions count in another frame from here on, the operator sets it: the tool is brought away, the program stops, and
-    /// starts again with the call of its tool. Where the tool is in the new frame nobody knows.
-    pub(super) fn reframed(&mut self, tool: u32, span: Span) {
-        self.step(Step::Home(Z), span);
-        self.step(Step::Auxiliary(Auxiliary::Stop), span);
-        self.step(Step::Tool(tool), span);
-        for step in self.running.again() {
-            self.step(step, span);
-        }
+    /// Positions count in another frame from here on, which the operator sets: before the next move the tool is brought away and the
+    /// program stops. Where the tool is in the new frame nobody knows.
+    pub(super) fn reframed(&mut self, span: Span) {
+        self.stop_due = Some(span);
         self.running.reframed();
         self.told = false;
         (self.position, self.before) = (None, None);
+    }
+
+    /// Stops for another frame, with the tool at home, where that is due.
+    fn stop(&mut self) -> Option<Span> {
+        let span = self.stop_due.take()?;
+        self.step(Step::Home(Z), span);
+        self.step(Step::Auxiliary(Auxiliary::Stop), span);
+        Some(span)
     }
 
     /// What there is to say of spindle, coolant and tool where they cut.

@@ -152,11 +152,11 @@ impl Reader<'_> {
         self.program.comment(&text, span);
         self.frame = Some(text);
         if self.program.has_moved() {
-            let Some(tool) = self.tool else {
+            if self.tool.is_none() {
                 let message = "the frame changes here, and no tool was called that could be brought away before the program stops";
                 return self.error("frame-tool", message, span);
-            };
-            self.program.reframed(tool, span);
+            }
+            self.program.reframed(span);
             self.diagnostics.push(
                 Diagnostic::warning("frame-changes", "the frame of the positions changes here")
                     .at(span, "")

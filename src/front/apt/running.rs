@@ -77,13 +77,14 @@ impl Running {
         }
     }
 
-    /// What has to be said again behind a second call of the same tool.
+    /// The call of the tool once more, and what has to be said behind it.
     pub(super) fn again(&self) -> Vec<Step<f64, Curve>> {
         let spindle = match self.spindle {
             Spindle::Turns(rpm) => Some(Step::Spindle(rpm)),
             Spindle::Unsaid | Spindle::Stopped | Spindle::Called => None,
         };
-        spindle.into_iter().chain((self.coolant == Coolant::Flows).then_some(Step::Coolant)).collect()
+        let coolant = (self.coolant == Coolant::Flows).then_some(Step::Coolant);
+        self.tool.map(Step::Tool).into_iter().chain(spindle).chain(coolant).collect()
     }
 
     /// Positions count in another frame from here on.
