@@ -324,12 +324,7 @@ impl Reader<'_> {
         } else if reading == Reading::Unsure && step.turn.max(ring.widest) <= HALF {
             let message =
                 "this point is on the circle before it: the end of that arc, or of a line behind it";
-            self.push(
-                Diagnostic::error("arc-points", message)
-                    .at(span, "")
-                    .hint("--from creo takes it for the end of the arc, where no other arc has its end alone")
-                    .hint(HINT),
-            );
+            self.push(Diagnostic::error("arc-points", message).at(span, "").hint(HINT));
         } else {
             let (count, _) = self.votes.lines.get_or_insert((0, span));
             *count += 1;
