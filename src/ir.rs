@@ -15,7 +15,7 @@ mod curve;
 mod passed;
 
 pub use arc::{ArcBy, Circle, WrittenArc, sweep, turned_end};
-pub use curve::{Curve, Described, Logarithmic, Method, Polyline, ThroughKind};
+pub use curve::{Curve, Described, Logarithmic, Method, Polyline, ThroughKind, map_along};
 pub use passed::Passed;
 
 use crate::decimal::{Decimal, units_to_f64};

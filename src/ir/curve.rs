@@ -1,6 +1,6 @@
 //! Curves in floats: shapes that can be evaluated exactly.
 
-use super::padded;
+use super::{Located, Step, padded};
 use crate::geom::arc::Arc;
 use crate::geom::bezier::Bezier;
 use crate::geom::direction;
@@ -8,6 +8,33 @@ use crate::geom::expr::curve::Formula;
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::geom::nurbs::Nurbs;
 use crate::units::Position;
+
+/// Gives rapids and cuts other coordinates beside X Y Z: `rapid` those of a rapid, `place` those of each place of `stride`
+/// numbers. A curve of which that is not known stays as it is.
+pub fn map_along(
+    steps: &mut [Located<f64, Curve>],
+    stride: usize,
+    rapid: impl Fn(&mut Vec<(usize, f64)>),
+    place: impl Fn(&Position) -> Position,
+) {
+    for located in steps {
+        match &mut located.step {
+            Step::Rapid(targets) => rapid(targets),
+            Step::Cut(cut) => {
+                if let Some(curve) = cut.curve.mapped_along(stride, &place) {
+                    cut.curve = curve;
+                }
+            }
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => {}
+        }
+    }
+}
 
 /// A shape that can be evaluated exactly.
 #[derive(Clone, Debug, PartialEq)]

@@ -90,17 +90,8 @@ fn homes(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
             | Step::Auxiliary(_) => {}
         }
     }
-    intent.program.steps.retain(|located| match located.step {
-        Step::Home(axis) => machine.retracts(axis),
-        Step::Comment(_)
-        | Step::Tool(_)
-        | Step::Spindle(_)
-        | Step::Coolant
-        | Step::Shift(_)
-        | Step::Auxiliary(_)
-        | Step::Rapid(_)
-        | Step::Cut(_) => true,
-    });
+    let dropped = |step: &_| matches!(step, Step::Home(axis) if !machine.retracts(*axis));
+    intent.program.steps.retain(|located| !dropped(&located.step));
     Ok(())
 }
 

@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
 use crate::geom::nurbs::Nurbs;
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step, map_along};
 use crate::source::Span;
 use crate::units::{Axes, Position};
 
@@ -84,24 +84,8 @@ impl Builder {
             self.flush();
             self.five = true;
             let place = |p: &Position| joined(&[p[0], p[1], p[2]], &UPRIGHT);
-            for located in &mut self.steps {
-                match &mut located.step {
-                    Step::Rapid(targets) => targets.extend(directed(&UPRIGHT)),
-                    Step::Cut(cut) => {
-                        // CL data has no curve that this is not known of.
-                        if let Some(curve) = cut.curve.mapped_along(2 * AXES, place) {
-                            cut.curve = curve;
-                        }
-                    }
-                    Step::Comment(_)
-                    | Step::Tool(_)
-                    | Step::Spindle(_)
-                    | Step::Coolant
-                    | Step::Home(_)
-                    | Step::Shift(_)
-                    | Step::Auxiliary(_) => {}
-                }
-            }
+            let rapid = |targets: &mut Vec<(usize, f64)>| targets.extend(directed(&UPRIGHT));
+            map_along(&mut self.steps, 2 * AXES, rapid, place);
         }
         self.axis = axis;
     }

@@ -446,7 +446,9 @@ impl<'s> Reader<'s> {
             Meaning::Movarc => self.movarc(said),
             Meaning::Indirv => self.indirv(said),
             Meaning::Tlon => self.tlon(said),
-            Meaning::NurbsSiemens | Meaning::Nurbs | Meaning::Movnrb if self.cycle.take().is_some() => {
+            Meaning::NurbsSiemens | Meaning::Nurbs | Meaning::Movnrb if self.cycle.is_some() => {
+                // Told once.
+                self.cycle = None;
                 let message = "a spline within a cycle: CYCLE/OFF has to stand before it";
                 self.error("spline-in-cycle", message, said.span);
                 self.spline = Some(Spline::Refused);

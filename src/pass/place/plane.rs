@@ -26,7 +26,7 @@ use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
 use crate::geom::direction;
 use crate::geom::rotation::Rotation;
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Step};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Step, map_along};
 use crate::machine::{Machine, Orientation, PlaneApproach};
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, Position};
@@ -75,23 +75,8 @@ pub(super) fn upright(intent: &mut Intent, machine: &Machine) {
         return;
     }
     let place = |p: &Position| [p[0], p[1], p[2], 0.0, 0.0, 0.0];
-    for located in &mut intent.program.steps {
-        match &mut located.step {
-            Step::Rapid(targets) => targets.retain(|(axis, _)| *axis < first),
-            Step::Cut(cut) => {
-                if let Some(curve) = cut.curve.mapped_along(PLACE, place) {
-                    cut.curve = curve;
-                }
-            }
-            Step::Comment(_)
-            | Step::Tool(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_) => {}
-        }
-    }
+    let rapid = |targets: &mut Vec<(usize, f64)>| targets.retain(|(axis, _)| *axis < first);
+    map_along(&mut intent.program.steps, PLACE, rapid, place);
     intent.program.steps.retain(|located| located.step != Step::Rapid(Vec::new()));
     intent.program.axes = axes;
     intent.tilt_error = Bound { rad: worst, ..Bound::ZERO };
