@@ -31,7 +31,7 @@ use std::borrow::Borrow;
 pub struct Program<N, C> {
     /// The program's name.
     pub name: String,
-    /// The program's number, where the control wants one.
+    /// The program's number, where the control wants one; 0: nobody chose one.
     pub number: u32,
     /// The coordinates of every position.
     pub axes: Axes,

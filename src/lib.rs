@@ -77,6 +77,8 @@ pub struct Options {
     pub method: Option<Method>,
     /// mm; none: the input's, or the machine's.
     pub tolerance: Option<f64>,
+    /// The program's number, where the control wants one; none: the input's.
+    pub number: Option<u32>,
     /// Write the program without its proof, and say so in it.
     pub no_verify: bool,
     /// Make splines of runs of short lines.
@@ -397,6 +399,9 @@ fn form_of(decimals: &ir::Decimals) -> Form {
 }
 
 fn with_options(mut intent: Intent, options: &Options) -> Intent {
+    if let Some(number) = options.number {
+        intent.program.number = number;
+    }
     if let Some(method) = options.method {
         for located in &mut intent.program.steps {
             if let Step::Cut(Cut { curve: Curve::Logarithmic(log), .. }) = &mut located.step {

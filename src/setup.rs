@@ -7,7 +7,9 @@ use crate::dialect::parts::Assigned;
 use crate::geom::direction;
 use crate::geom::rotation::Rotation;
 use crate::ir::{Auxiliary, Curve, Decimals, Intent, Role, Step, Units, Written};
-use crate::machine::{Machine, Moves, PlaneApproach, Turn};
+use crate::machine::remark::{taken, wrapped};
+use crate::machine::{Machine, Moves, PlaneApproach, RotaryFeed, Turn};
+use crate::pass::check::moving;
 use crate::pass::stretch::linear_length;
 use crate::pass::{limits, range};
 use crate::units::{Axes, DEGREES, Kind, Position};
@@ -34,6 +36,8 @@ pub struct Setup {
     pub paths: usize,
     /// How long a path takes at the feed that was asked for, minutes: from the shortest to the longest.
     pub path_minutes: Option<[f64; 2]>,
+    /// What the control has for the speed of axes that F does not count, where the program moves some with others that it counts.
+    pub free_axes: Option<String>,
     /// What the program's parameters are.
     pub parameters: Vec<String>,
     /// What the control needs beside its basic functions.
@@ -106,6 +110,7 @@ impl Setup {
             home,
             paths: minutes.len(),
             path_minutes: range,
+            free_axes: free_axes(decimals, machine),
             parameters: parameters(decimals, machine),
             needs: needs(decimals, machine),
             not_covered: not_covered(intent),
@@ -117,7 +122,7 @@ impl Setup {
         if !machine.frame.setup {
             return Vec::new();
         }
-        self.lines().iter().flat_map(|line| wrapped(line, machine)).collect()
+        self.lines().iter().flat_map(|line| wrapped(&taken(line, &machine.text), machine)).collect()
     }
 
     fn lines(&self) -> Vec<String> {
@@ -161,7 +166,8 @@ impl Setup {
         if let Some([least, most]) = self.path_minutes {
             let (least, most) = (short(least, 3), short(most, 3));
             let minutes = if least == most { least } else { format!("{least} TO {most}") };
-            lines.push(format!("TIME: {} PATHS OF {minutes} MIN", self.paths));
+            let paths = if self.paths == 1 { "PATH" } else { "PATHS" };
+            lines.push(format!("TIME: {} {paths} OF {minutes} MIN", self.paths));
         }
         let speeds: Vec<String> = self
             .axes
@@ -170,7 +176,7 @@ impl Setup {
             .map(|figures| format!("{} {}", figures.axis, short(figures.speed, 0)))
             .collect();
         if !speeds.is_empty() {
-            lines.push(format!("FASTEST AT FEED, MM/MIN OR DEG/MIN: {}", speeds.join(", ")));
+            lines.push(format!("FASTEST AT FEED, MM OR DEGREES A MINUTE: {}", speeds.join(", ")));
         }
         let work: Vec<&str> = self
             .axes
@@ -180,6 +186,9 @@ impl Setup {
             .collect();
         if !work.is_empty() {
             lines.push(format!("THE WORK MOVES WITH: {}", work.join(" ")));
+        }
+        if let Some(free) = &self.free_axes {
+            lines.push(free.clone());
         }
         if !self.parameters.is_empty() {
             lines.push(format!("PARAMETERS: {}", self.parameters.join(", ").to_uppercase()));
@@ -212,26 +221,27 @@ fn amount(curve: &Curve, axes: &Axes) -> f64 {
     }
 }
 
+/// What is to be seen to where F is the speed of the linear axes alone, and others go along: where those hardly move only the
+/// control's own data say how fast the others may be.
+fn free_axes(decimals: &Decimals, machine: &Machine) -> Option<String> {
+    let data = machine.dialect.free_axes.filter(|_| machine.rotary_feed == RotaryFeed::Free)?;
+    let axes = decimals.program.axes;
+    let cuts = decimals.program.steps.iter().filter_map(|located| located.step.cut());
+    let moved: Vec<usize> = cuts.flat_map(|cut| moving(&cut.curve)).collect();
+    let named = |kind: Kind| {
+        let all = (0..axes.count())
+            .filter(|i| axes.kind(*i) == kind && (kind == Kind::Linear || moved.contains(i)));
+        all.map(|i| axes.name(i).to_string()).collect::<Vec<_>>().join(" ")
+    };
+    let free = named(Kind::Rotary);
+    let linear = named(Kind::Linear);
+    (!free.is_empty()).then(|| {
+        format!("F COUNTS {linear} ALONE: {data} SAYS HOW FAST {free} MAY BE WHERE THESE HARDLY MOVE, 3 IS ADVISED")
+    })
+}
+
 /// How the last of the remarks that say what to set up begins.
 pub const LAST_REMARK: &str = "NOT PROVED:";
-
-/// A remark in lines of the length that the machine file allows, cut between words.
-pub fn wrapped(text: &str, machine: &Machine) -> Vec<String> {
-    let most = machine.text.comment_length;
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let last = lines.len() - 1;
-        if lines[last].is_empty() {
-            lines[last].push_str(word);
-        } else if lines[last].len() + 1 + word.len() <= most {
-            lines[last].push(' ');
-            lines[last].push_str(word);
-        } else {
-            lines.push(word.to_owned());
-        }
-    }
-    lines
-}
 
 /// Where zero is: a cutter's path starts there.
 fn zero(intent: &Intent) -> Option<String> {
@@ -239,16 +249,16 @@ fn zero(intent: &Intent) -> Option<String> {
     let axes = intent.program.axes;
     let [x, y, z, a] = [0, 1, 2, 3].map(|i| axes.name(i));
     let d1 = Decimal::round(log.curve.cutter().d1, 4).unwrap_or_default();
-    Some(format!("{x} WHERE THE DIAMETER IS D1 {d1}, {y} {z} CONTACT THERE, {a} THE CUTTER'S INDEX"))
+    Some(format!("{x} WHERE THE DIAMETER IS D1 {d1}, {y} {z} CONTACT THERE, {a} THE INDEX OF THE CUTTER"))
 }
 
 /// All that a proof may not cover.
 const NOT_COVERED: [&str; 5] = [
-    "the control's smoothing and compressor",
-    "the wheel's radius and profile",
+    "smoothing and compressor of the control",
+    "radius and profile of the wheel",
     "where the rotary axes go and what they meet there",
     "that the tool turns between blocks as the machine file says",
-    "how far the machine's own axes go in tilted planes",
+    "how far the axes of the machine go in tilted planes",
 ];
 
 /// What the proof does not cover.

@@ -100,8 +100,7 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
         }
     }
     let Program { name, number, .. } = &decimals.program;
-    // A language without numbers leaves 0, which is none where one is wanted; all inputs that state none have 1.
-    let number = (*number).max(1);
+    let number = *number;
     let mut program = Program { name: name.clone(), number, axes, steps: asked };
     planes::count_back(&mut program, machine.orientation.plane_order)?;
     Ok(Intent { program, tolerance: None, name_span: None, radius: None, tilt_error: Bound::ZERO, warnings })

@@ -128,7 +128,7 @@ pub fn verify(
         report.blocks.push(u32::from(!matches!(located.step, Step::Comment(_))));
         match &located.step {
             Step::Comment(comment) => {
-                for line in crate::setup::wrapped(comment, machine) {
+                for line in crate::machine::remark::wrapped(comment, machine) {
                     cursor.comment(&line)?;
                 }
             }

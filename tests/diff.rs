@@ -240,7 +240,7 @@ fn feeds_tools_and_switches_are_told_by_name() {
     let [sinumerik, heidenhain, mazak] = written(MIXED);
     let cases = [
         (&sinumerik, "F1000", "F1001", "feed-differs"),
-        (&sinumerik, "N80 T3", "N80 T4", "step-differs"),
+        (&sinumerik, "N90 T3", "N90 T4", "step-differs"),
         (&sinumerik, "S3000", "S3001", "step-differs"),
         (&sinumerik, "G0 Z50", "G0 Z51", "step-differs"),
         (&heidenhain, "F1000", "F999", "feed-differs"),

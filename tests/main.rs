@@ -24,10 +24,12 @@
 //! | `simulate` | the tables of `docs/simulation.md` |
 //! | `readme` | the README's commands |
 //! | `schema` | keys and JSON Schemas |
+//! | `cases` | small inputs, each with its right value |
 //! | `cli` | exit codes, files, streams |
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
 mod apt;
+mod cases;
 mod cli;
 mod damage;
 mod diff;

@@ -96,7 +96,7 @@ fn the_block_of_the_input_is_blamed_when_it_is_translated() {
 fn what_is_written_is_never_refused() {
     let from = machine("extends = \"sinumerik\"\nname = \"from\"\n");
     let header: Vec<String> =
-        ["; AB", "G17 G40 G71 G90 G94", "MCALL", "TRAFOOF", "TRANS", "G54 G64 COMPOF", "FGROUP(X,Y,Z)"]
+        ["; AB", "G17 G40 G710 G90 G94", "MCALL", "TRAFOOF", "TRANS", "G54 G64 COMPOF", "FGROUP(X,Y,Z)"]
             .map(str::to_owned)
             .to_vec();
     let mut lines = header;
@@ -111,7 +111,7 @@ fn what_is_written_is_never_refused() {
         lines.push(format!("G1 X{sx:.6} Y{sy:.6}"));
         lines.push(format!("G3 X{ex:.6} Y{ey:.6} I{:.6} J{:.6}", x - sx, y - sy));
     }
-    lines.extend(["G0 Z50", "M5", "M9", "M30"].map(str::to_owned));
+    lines.extend(["G0 Z50", "M5", "M9", "FGROUP()", "SPATH", "M30"].map(str::to_owned));
     let text = lines.join("\n") + "\n";
     for name in ["sinumerik", "heidenhain", "mazak"] {
         for digits in [2, 3, 4] {

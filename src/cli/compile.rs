@@ -29,6 +29,9 @@ pub(crate) struct Compile {
     /// Tolerance in mm, instead of the input's or the machine's
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
+    /// The program's number, where the control wants one, instead of the input's
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    number: Option<u32>,
     /// The input's language, where it cannot be told from its text; or the machine that it is an NC program for
     #[arg(long, value_name = "LANGUAGE|MACHINE")]
     from: Option<String>,
@@ -64,6 +67,7 @@ impl Compile {
             motion: motion(self.motion.as_deref(), &machine)?,
             method: self.method.map(Into::into),
             tolerance: self.tolerance,
+            number: self.number,
             no_verify: self.no_verify,
             fit: self.fit,
             corner: self.corner,

@@ -25,6 +25,9 @@ pub(crate) struct Verify {
     /// Tolerance in mm, instead of the input's or the machine's
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     tolerance: Option<f64>,
+    /// The program's number, instead of the input's
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    number: Option<u32>,
     /// The input's language, where it cannot be told from its text
     #[arg(long, value_name = "LANGUAGE")]
     from: Option<String>,
@@ -42,8 +45,12 @@ impl Verify {
         let id = sources.push(program);
         let machine = machine(&self.to, sources)?;
         let language = language(self.from.as_deref(), sources)?;
-        let options =
-            Options { method: self.method.map(Into::into), tolerance: self.tolerance, ..Options::default() };
+        let options = Options {
+            method: self.method.map(Into::into),
+            tolerance: self.tolerance,
+            number: self.number,
+            ..Options::default()
+        };
         let verified = splinepost::verify_program(sources, language, id, &machine, &options)?;
         console.diagnostics(&verified.warnings, sources);
         let report = Some(&verified.report);

@@ -313,6 +313,17 @@ impl<'m> Assembler<'m> {
         }
     }
 
+    /// Whether more than remarks and retractions has come.
+    pub fn has_begun(&self) -> bool {
+        self.run.is_some()
+            || self.steps.iter().any(|located| !matches!(located.step, Step::Comment(_) | Step::Home(_)))
+    }
+
+    /// Ends a run of lines: one that follows is another cut.
+    pub fn end_run(&mut self) {
+        self.flush();
+    }
+
     /// Whether the tip of the tool is led.
     pub fn leads_tip(&self) -> bool {
         self.led

@@ -26,6 +26,8 @@ pub struct Frame<'m> {
     /// What the lines that may stand behind the header begin and end with, by the first byte of a line.
     outlines: Vec<Vec<Outline>>,
     started: bool,
+    /// Whether the lines behind the first retraction are still to come.
+    start_due: bool,
     name: Option<String>,
 }
 
@@ -60,6 +62,7 @@ impl<'m> Frame<'m> {
             assign: Template(machine.dialect.parameter.assign.to_owned()),
             outlines: Vec::new(),
             started: false,
+            start_due: !machine_frame.start.is_empty(),
             name: None,
         };
         let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
@@ -79,13 +82,18 @@ impl<'m> Frame<'m> {
         self.header == self.machine.frame.header.len()
     }
 
+    /// Whether all that stands before the first tool was met: the header, and the lines behind the first retraction.
+    pub fn start_complete(&self) -> bool {
+        self.header_complete() && !self.start_due
+    }
+
     /// Whether the whole footer was met, and what closes the text.
     pub fn footer_complete(&self) -> bool {
         self.ended == self.end.len()
     }
 
     /// The lists of lines that may stand anywhere behind the header.
-    fn lists(&self) -> [&'m [Template]; 15] {
+    fn lists(&self) -> [&'m [Template]; 17] {
         let frame = &self.machine.frame;
         [
             &frame.tool_spindle,
@@ -102,6 +110,8 @@ impl<'m> Frame<'m> {
             &frame.tip_control_end,
             &frame.plane,
             &frame.plane_end,
+            &frame.start,
+            &frame.unwind,
             &frame.shift,
         ]
     }
@@ -154,6 +164,16 @@ impl<'m> Frame<'m> {
             }
         }
         self.started = true;
+        // They may be those that end a plane, and come before anything else.
+        if self.start_due
+            && !assembler.has_begun()
+            && let Some((template, rest)) = frame.start.split_first()
+            && template.matched(text).is_some()
+        {
+            self.start_due = false;
+            self.pending = rest.iter().collect();
+            return Met::Fixed;
+        }
         if 0 < self.ended {
             match self.end.get(self.ended).copied() {
                 Some(template) if self.take(template, text, span, true, assembler) => {
@@ -187,7 +207,7 @@ impl<'m> Frame<'m> {
             self.ended = 1;
             return Met::Fixed;
         }
-        for lines in &self.lists()[..14] {
+        for lines in &self.lists()[..16] {
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
                 && self.take(template, text, span, true, assembler)
@@ -326,6 +346,13 @@ impl<'m> Frame<'m> {
                         // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
                         return false;
                     }
+                }
+                "axis" => {
+                    if assembler.axis(value).is_none() {
+                        return false;
+                    }
+                    // What follows counts from there.
+                    assembler.end_run();
                 }
                 "home" => {
                     let axes = 0..self.machine.axes.count();

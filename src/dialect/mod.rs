@@ -35,6 +35,7 @@ use crate::source::SourceId;
 use std::ops::Range;
 
 /// How a family of controls is written to and read.
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of the control")]
 pub struct Dialect {
     /// Its name.
     pub name: &'static str,
@@ -46,6 +47,8 @@ pub struct Dialect {
     pub nurbs: Option<NurbsRules>,
     /// What a program may be called, in words, and whether a name is that.
     pub naming: (&'static str, fn(&str) -> bool),
+    /// Whether a program is kept in a file of its name, so that the name is not only a remark.
+    pub file_names: bool,
     /// How parameters of a program are spelled.
     pub parameter: Parameter,
     /// What every program takes for granted, so that no line round it may say otherwise.
@@ -60,6 +63,10 @@ pub struct Dialect {
     pub direction: [&'static str; 3],
     /// The words of how the tool turns between two directions, in their plane or with the rotary axes evenly, where it has some.
     pub turn: Option<[&'static str; 2]>,
+    /// Whether a straight block that states the tool's direction states all of X Y Z too.
+    pub directed_places: bool,
+    /// What the control has for how fast axes outside F may be, where those that F counts hardly move.
+    pub free_axes: Option<&'static str>,
     /// Whether it has words for the curve of a second point of the tool.
     pub second_curve: bool,
     /// Spells a legal program.
@@ -196,6 +203,15 @@ pub enum Form {
 
 /// All dialects.
 pub const DIALECTS: &[Dialect] = &[sinumerik::DIALECT, heidenhain::DIALECT, iso::MAZAK];
+
+/// Names that no file has on the computers through which programs go: those of their devices, in capitals or not.
+fn is_device(name: &str) -> bool {
+    let name = name.to_ascii_uppercase();
+    let numbered = |device: &str| {
+        name.strip_prefix(device).is_some_and(|number| matches!(number.as_bytes(), [b'1'..=b'9']))
+    };
+    ["CON", "PRN", "AUX", "NUL"].contains(&name.as_str()) || numbered("COM") || numbered("LPT")
+}
 
 /// The dialect of a name.
 pub fn find(name: &str) -> Option<&'static Dialect> {

@@ -27,6 +27,8 @@ pub struct Modal<'m> {
     reversed: [bool; MAX_AXES],
     /// Which axes go round past 360 degrees in the lines that are written.
     round: [bool; MAX_AXES],
+    /// Which axes went round in steps, so that the control may count them beyond 360 degrees.
+    pub wound: [bool; MAX_AXES],
     /// Each feed that is a parameter, and its number.
     feeds: Vec<(Decimal, u32)>,
     /// Where each axis is known to be, in units of its last decimal.
@@ -66,6 +68,7 @@ impl<'m> Modal<'m> {
             shift: [0; MAX_AXES],
             reversed: machine.reversed(),
             round: [false; MAX_AXES],
+            wound: [false; MAX_AXES],
             feeds: Vec::new(),
             position: [None; MAX_AXES],
             motion: None,
@@ -143,6 +146,11 @@ impl<'m> Modal<'m> {
         }
     }
 
+    /// Whether F is inverse time: no more than a run of lines is left so.
+    pub fn is_timed(&self) -> bool {
+        self.inverse == Some(true)
+    }
+
     /// F of one line under inverse time.
     pub fn rate(&mut self, rate: Decimal) {
         self.out.push(b'F');
@@ -195,14 +203,18 @@ impl<'m> Modal<'m> {
     /// A run of lines starts: axes that wrap, and leave 0 to 360 degrees in it, go round.
     pub fn lines(&mut self, points: &WrittenPoints) {
         for i in 0..points.stride {
-            self.round[i] = false;
-            if !self.machine.limits(self.machine.axes.name(i)).modulo {
-                continue;
-            }
-            let turn = 360 * power_of_ten(self.digits[i]);
-            let outside = |units: i64| !(0..turn).contains(&(units - self.shift[i]));
-            self.round[i] = outside(points.start[i]) || points.points().any(|point| outside(point[i]));
+            self.round[i] = self.goes_round(points, i);
         }
+    }
+
+    /// Whether an axis wraps, and leaves 0 to 360 degrees in a run of lines.
+    pub fn goes_round(&self, points: &WrittenPoints, i: usize) -> bool {
+        if !self.machine.limits(self.machine.axes.name(i)).modulo {
+            return false;
+        }
+        let turn = 360 * power_of_ten(self.digits[i]);
+        let outside = |units: i64| !(0..turn).contains(&(units - self.shift[i]));
+        outside(points.start[i]) || points.points().any(|point| outside(point[i]))
     }
 
     /// A run of lines has ended.
@@ -228,6 +240,7 @@ impl<'m> Modal<'m> {
                 self.text("I");
                 self.axis_name(i);
                 write_units(&mut self.out, step, self.digits[i], self.spelling);
+                self.wound[i] = true;
             }
             Round::Place => {
                 self.axis_name(i);

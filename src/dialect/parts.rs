@@ -58,11 +58,20 @@ pub fn parts<'p>(decimals: &'p Decimals, machine: &Machine) -> (Vec<Part<'p>>, V
     let values = [("name", program.name.as_str()), ("number", &number), ("linear", &linear)];
     let assigned = Assigned::of(decimals, machine);
     let corrections = assigned.corrections.iter().map(|(axis, _, number)| (*axis, *number)).collect();
-    let mut walk = Walk { decimals, machine, parts: Vec::new(), bodies: Vec::new(), corrections, tool: 0 };
+    let mut walk = Walk {
+        decimals,
+        machine,
+        parts: Vec::new(),
+        bodies: Vec::new(),
+        corrections,
+        tool: 0,
+        start: Some(&frame.start),
+    };
     walk.fill(&frame.header, &values);
     walk.parts.extend(decimals.setup.iter().map(|remark| Part::Remark(remark)));
     walk.assign(&assigned);
     walk.steps(&program.steps);
+    walk.start();
     walk.fill(&frame.footer, &values);
     walk.subprograms();
     walk.fill(&frame.close, &values);
@@ -115,6 +124,8 @@ struct Walk<'p, 'm> {
     corrections: Vec<(usize, u32)>,
     /// The tool that was called last.
     tool: u32,
+    /// The lines behind the first retraction, where they are still to come.
+    start: Option<&'m [Template]>,
 }
 
 /// The body of a section, and where its axes count from.
@@ -144,6 +155,17 @@ impl<'p> Walk<'p, '_> {
         let mut rest = steps;
         while let Some((located, after)) = rest.split_first() {
             rest = after;
+            // What may turn axes waits until the tool is home; where none goes there, it comes before all else.
+            match located.step {
+                Step::Comment(_) | Step::Home(_) => {}
+                Step::Tool(_)
+                | Step::Spindle(_)
+                | Step::Coolant
+                | Step::Shift(_)
+                | Step::Auxiliary(_)
+                | Step::Rapid(_)
+                | Step::Cut(_) => self.start(),
+            }
             match &located.step {
                 Step::Tool(number) => {
                     self.tool = *number;
@@ -219,6 +241,13 @@ impl<'p> Walk<'p, '_> {
                 Step::Rapid(targets) => self.parts.push(Part::Rapid(targets)),
                 Step::Cut(cut) => self.parts.push(Part::Cut(cut)),
             }
+        }
+    }
+
+    /// The lines behind the first retraction, once.
+    fn start(&mut self) {
+        if let Some(lines) = self.start.take() {
+            self.fill(lines, &[]);
         }
     }
 

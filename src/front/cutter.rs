@@ -53,7 +53,7 @@ pub struct CutterJob {
     pub name: String,
     /// Where it stands in the file.
     pub name_span: Option<Span>,
-    /// Its number, where the control wants one.
+    /// Its number, where the control wants one; 0: nobody chose one.
     pub number: u32,
     /// The paths of the flutes, in order.
     pub flutes: Vec<Logarithmic>,
@@ -214,7 +214,7 @@ impl Reader {
             self.error("name-characters", "name must be 1 to 64 printable ASCII characters", spanned.span());
         }
         let number = match &file.number {
-            None => 1,
+            None => 0,
             Some(number) => {
                 if !(1..=9999).contains(number.get_ref()) {
                     self.error("number-range", "number is 1 to 9999", number.span());

@@ -73,7 +73,7 @@ pub struct Job {
     pub name: String,
     /// Where it stands in the file.
     pub name_span: Option<Span>,
-    /// Its number, where the control wants one.
+    /// Its number, where the control wants one; 0: nobody chose one.
     pub number: u32,
     /// The tolerance of the input, mm, and where it stands.
     pub tolerance: Option<(f64, Span)>,
@@ -228,7 +228,7 @@ impl Reader<'_> {
         let name_span = file.name.as_ref().map(|name| self.span(name.span()));
         let warnings = Diagnostics::new();
         let number = match &file.number {
-            None => 1,
+            None => 0,
             Some(number) => {
                 if !(1..=9999).contains(number.get_ref()) {
                     self.error("number-range", "number is 1 to 9999", number.span());

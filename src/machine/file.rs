@@ -1,6 +1,7 @@
 //! Machine files as text: keys, values, and what is wrong with them.
 
 mod parts;
+mod spelling;
 
 use super::keys::{AxesFile, File, KEYS};
 use super::{BUILT_IN, Machine, RotaryFeed};

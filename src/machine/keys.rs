@@ -52,6 +52,8 @@ pub const KEYS: &[Key] = &[
             Key::value("number_comments"),
             Key::value("line_end"),
             Key::value("comment_length"),
+            Key::value("comment_signs"),
+            Key::value("comment_lower"),
             Key::value("extension"),
         ],
     ),
@@ -65,6 +67,7 @@ pub const KEYS: &[Key] = &[
         &[
             Key::value("axes"),
             Key::value("poly_degree"),
+            Key::value("poly_words"),
             Key::value("shared_parameter"),
             Key::value("bspline_min_blocks"),
             Key::value("first_point"),
@@ -92,6 +95,7 @@ pub const KEYS: &[Key] = &[
         &[
             Key::value("header"),
             Key::value("setup"),
+            Key::value("start"),
             Key::value("home"),
             Key::value("tool"),
             Key::value("spindle"),
@@ -107,6 +111,7 @@ pub const KEYS: &[Key] = &[
             Key::value("plane"),
             Key::value("plane_end"),
             Key::value("shift"),
+            Key::value("unwind"),
             Key::value("footer"),
             Key::value("subprograms"),
             Key::value("call"),
@@ -258,6 +263,11 @@ pub(super) struct TextFile {
     /// The most characters of a comment, 20 to 500; longer ones go on in another.
     #[schemars(with = "Option<usize>")]
     pub(super) comment_length: Option<Spanned<usize>>,
+    /// The signs that a comment may have beside capitals, digits and blanks; others are written with these, or become blanks.
+    #[schemars(with = "Option<String>")]
+    pub(super) comment_signs: Option<Spanned<String>>,
+    /// Whether comments may have small letters.
+    pub(super) comment_lower: Option<bool>,
     /// The usual extension of a program file.
     pub(super) extension: Option<String>,
 }
@@ -301,6 +311,9 @@ pub(super) struct SplineFile {
     /// Greatest degree of polynomial blocks, 3 to 5.
     #[schemars(with = "Option<usize>")]
     pub(super) poly_degree: Option<Spanned<usize>>,
+    /// The most numbers of a polynomial block: the ends and coefficients of its axes and those of its denominator together.
+    #[schemars(with = "Option<usize>")]
+    pub(super) poly_words: Option<Spanned<usize>>,
     /// Whether all axes of a spline block follow one parameter; on Sinumerik, whether there is UPATH.
     pub(super) shared_parameter: Option<bool>,
     /// The fewest blocks of a B-spline.
@@ -369,6 +382,9 @@ pub(super) struct ProgramFile {
     pub(super) header: Option<Vec<Spanned<String>>>,
     /// Whether comments behind the header say what to set up.
     pub(super) setup: Option<bool>,
+    /// Behind the first retraction, or behind the header where nothing retracts: what may turn axes, as the end of a plane that is left over.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) start: Option<Vec<Spanned<String>>>,
     /// The retraction in machine coordinates before a tool change and at the end; {home}: the axis and its home.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) home: Option<Vec<Spanned<String>>>,
@@ -414,6 +430,9 @@ pub(super) struct ProgramFile {
     /// A work offset; {words}: the axis words. A line with {i} stands once for each axis, {i} counting from 1.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) shift: Option<Vec<Spanned<String>>>,
+    /// Behind lines that went round on an axis that wraps, in steps: counts it below 360 degrees again; {axis}.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) unwind: Option<Vec<Spanned<String>>>,
     /// After the last step; {name}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) footer: Option<Vec<Spanned<String>>>,

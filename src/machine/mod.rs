@@ -8,6 +8,7 @@
 mod file;
 mod keys;
 mod parts;
+pub mod remark;
 pub mod template;
 
 use crate::decimal::Decimal;

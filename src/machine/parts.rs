@@ -181,6 +181,10 @@ pub struct Text {
     pub line_end: LineEnd,
     /// The most characters of a comment.
     pub comment_length: usize,
+    /// The signs that a comment may have beside capitals, digits and blanks.
+    pub comment_signs: String,
+    /// Whether comments may have small letters.
+    pub comment_lower: bool,
     /// The usual extension of a program file.
     pub extension: String,
 }
@@ -241,6 +245,8 @@ pub struct Spline {
     pub axes: Vec<Axis>,
     /// The greatest degree of polynomial blocks.
     pub poly_degree: usize,
+    /// The most numbers of a polynomial block: ends and coefficients together.
+    pub poly_words: usize,
     /// Whether all axes of a spline block share one parameter on the control.
     pub shared_parameter: bool,
     /// The fewest blocks a B-spline may have.
@@ -260,6 +266,8 @@ pub struct Frame {
     pub header: Vec<Template>,
     /// Whether comments behind the header say what to set up.
     pub setup: bool,
+    /// Behind the first retraction.
+    pub start: Vec<Template>,
     /// The retraction of an axis in machine coordinates.
     pub home: Vec<Template>,
     /// A tool call.
@@ -290,6 +298,8 @@ pub struct Frame {
     pub plane_end: Vec<Template>,
     /// A work offset.
     pub shift: Vec<Template>,
+    /// Behind lines that went round in steps, where an axis wraps.
+    pub unwind: Vec<Template>,
     /// After the last step.
     pub footer: Vec<Template>,
     /// Whether sections that are alike but for a work offset are written once and called.

@@ -25,13 +25,13 @@ impl Template {
 
     /// The values of the variables where `line` is this template filled in; none where it is not.
     ///
-    /// A value is what stands up to the next fixed text; it is not empty.
+    /// A value is what stands up to the next fixed text; it is not empty. A variable that stands twice has one value.
     pub fn matched<'l>(&self, line: &'l str) -> Option<Vec<(String, &'l str)>> {
         // Most lines are ruled out by their end.
         if !line.ends_with(self.outline().1) {
             return None;
         }
-        let mut values = Vec::new();
+        let mut values: Vec<(String, &str)> = Vec::new();
         let (mut template, mut line) = (self.0.as_str(), line);
         while let Some(open) = template.find('{') {
             let close = open + template[open..].find('}')?;
@@ -42,7 +42,11 @@ impl Template {
             if length == 0 {
                 return None;
             }
-            values.push((template[open + 1..close].to_owned(), &line[..length]));
+            let (name, value) = (&template[open + 1..close], &line[..length]);
+            if values.iter().any(|(known, other)| known == name && *other != value) {
+                return None;
+            }
+            values.push((name.to_owned(), value));
             line = &line[length..];
             template = after;
         }
@@ -74,5 +78,9 @@ mod tests {
             assert_eq!(template.matched(line), None, "{line}");
         }
         assert_eq!(Template("M30".into()).matched("M30"), Some(vec![]));
+        // From the label of one subprogram to the end of another is none of them.
+        let call = Template("CALL BLOCK FLUTE{label} TO FLUTE{label}_END".into());
+        assert_eq!(call.matched("CALL BLOCK FLUTE1 TO FLUTE1_END").unwrap()[0].1, "1");
+        assert_eq!(call.matched("CALL BLOCK FLUTE1 TO FLUTE2_END"), None);
     }
 }

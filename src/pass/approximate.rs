@@ -49,6 +49,17 @@ fn moving(pieces: &[Bezier]) -> Vec<usize> {
     (0..first.len()).filter(moves).collect()
 }
 
+/// The most numbers of a polynomial block that is one of these pieces: of each axis its end and what follows of its degree, and
+/// as many of a denominator.
+fn words(pieces: &[Bezier], axes: &Axes) -> usize {
+    let moved = moving(pieces);
+    let second = axes.direction().is_some_and(|first| moved.iter().any(|i| first <= *i));
+    let places = moved.iter().filter(|i| axes.direction().is_none_or(|first| **i < first)).count();
+    let named = places + if second { 3 } else { 0 };
+    let of = |piece: &Bezier| (named + usize::from(!piece.is_polynomial())) * piece.degree;
+    pieces.iter().map(of).max().unwrap_or(0)
+}
+
 /// Whether a form takes a curve exactly; if not, why.
 ///
 /// # Errors
@@ -74,6 +85,12 @@ pub fn exact(curve: &Curve, form: Form, frame: &Frame<'_>) -> Result<(), String>
         Form::Polynomial { closing: true } => Ok(()),
         Form::Polynomial { closing: false } if frame.machine.spline.poly_degree < degree => {
             Err(above(frame.machine.spline.poly_degree))
+        }
+        Form::Polynomial { closing: false }
+            if frame.machine.spline.poly_words < words(&pieces, frame.axes) =>
+        {
+            let (words, most) = (words(&pieces, frame.axes), frame.machine.spline.poly_words);
+            Err(format!("its blocks would have up to {words} numbers, and {most} is the most here"))
         }
         Form::Polynomial { closing: false } => {
             let geometry = |i: &usize| ["X", "Y", "Z"].contains(&axes.name(*i).as_str());

@@ -4,10 +4,10 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{ArcKind, ArcWord, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{ArcBy, Circle, Decimals, PolynomialBlock, Step, Units, Written};
+use crate::ir::{ArcBy, COEFFICIENTS, Circle, Decimals, PolynomialBlock, Step, Units, Written};
 use crate::machine::Machine;
 use crate::pass::{limits, range};
-use crate::units::{Axis, DEGREES, MAX_AXES, Position};
+use crate::units::{Axes, Axis, DEGREES, MAX_AXES, Position};
 
 /// A program in decimals that one machine takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,6 +149,21 @@ fn form(decimals: &Decimals, curve: &Written, machine: &Machine) -> Result<usize
             format!("{} has no word for {what}; its motions are {}", dialect.name, dialect.motion_names());
         return Err(Diagnostic::error("form-not-in-dialect", message));
     };
+    if let (Written::Polynomial(polynomial), Form::Polynomial { closing: false }) = (curve, motion.form) {
+        let most = machine.spline.poly_words;
+        let mut start = &polynomial.start;
+        for block in &polynomial.blocks {
+            let words = words(block, start, decimals.program.axes);
+            if most < words {
+                let message = format!(
+                    "a polynomial block has {words} numbers, more than the {most} of the machine file"
+                );
+                return Err(Diagnostic::refusal("words-too-many", message)
+                    .hint("[spline] poly_words says how many a block may have; --motion linear needs none"));
+            }
+            start = &block.end;
+        }
+    }
     let (Written::Polynomial(polynomial), Form::Polynomial { closing: true }) = (curve, motion.form) else {
         return Ok(0);
     };
@@ -171,6 +186,28 @@ fn form(decimals: &Decimals, curve: &Written, machine: &Machine) -> Result<usize
         start = block.end;
     }
     Ok(digits)
+}
+
+/// How many numbers a polynomial block takes: the end and the coefficients of each axis that it moves, a second point's among
+/// them, and those of its denominator. A direction is D = H - P, so that H takes the coefficients of both.
+fn words(block: &PolynomialBlock, start: &Units, axes: Axes) -> usize {
+    let used = |coefficients: &[Decimal; COEFFICIENTS]| {
+        COEFFICIENTS - coefficients.iter().rev().take_while(|a| a.is_zero()).count()
+    };
+    let own = |i: usize| used(&block.coefficients[i]);
+    let first = axes.direction();
+    let turns = first.is_some_and(|first| (first..first + 3).any(|i| 0 < own(i) || block.end[i] != start[i]));
+    let mut words = block.denominator.map_or(0, |denominator| 1 + used(&denominator.coefficients));
+    for i in 0..axes.count() {
+        let second = first.filter(|first| *first <= i);
+        words += match second {
+            Some(first) if turns => 1 + own(i).max(own(i - first)),
+            Some(_) => 0,
+            None if 0 < own(i) || block.end[i] != start[i] => 1 + own(i),
+            None => 0,
+        };
+    }
+    words
 }
 
 /// The digits of a number from the first that is not zero to the last.

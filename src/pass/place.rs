@@ -5,8 +5,11 @@
 //! runs from 0 to 159, and so does every other. Where the cutter turns by more than a whole turn, no offset helps: the
 //! flute is counted from where it starts, and lines go round in steps.
 
+mod coolant;
+mod named;
 mod plane;
 mod tip;
+mod whole;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Logarithmic, Polyline, Role, Shift, Step};
@@ -34,6 +37,9 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
             }
         }
     }
+    named::number(&mut intent, machine);
+    named::name(&mut intent, machine);
+    coolant::round_changes(&mut intent, machine);
     let machine = directions(&mut intent, machine)?;
     homes(&mut intent, &machine)?;
     if intent.program.axes.direction().is_none() {
@@ -41,6 +47,8 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
     }
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
+    whole::places(&mut intent, &machine)?;
+    named::remarks(&mut intent, &machine);
     Ok(intent)
 }
 

@@ -33,7 +33,7 @@ use crate::ir::{
     turned_end,
 };
 use crate::machine::Machine;
-use crate::setup::wrapped;
+use crate::machine::remark::wrapped;
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 use std::borrow::Cow;
 

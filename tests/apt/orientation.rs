@@ -293,7 +293,7 @@ fn arcs_are_arcs_where_the_tool_keeps_its_direction() {
     // The direction belongs to the block.
     let own = machine("extends = \"sinumerik\"");
     for (from, to) in [
-        (" A3=0.5 B3=0 C3=0.866025\nN190", "\nN190"),
+        (" A3=0.5 B3=0 C3=0.866025\nN200", "\nN200"),
         ("I-20 J0 A3=0.5", "I-20 J0 A3=0.6"),
         ("I-20 J0 A3=0.5 ", "I-20 J0 "),
         ("K1=AC(1.949747)", "K1=AC(1.959747)"),
@@ -411,7 +411,7 @@ fn a_tool_that_was_changed_is_nowhere_known() {
     // Where a cut follows a tool call, the tool goes over its start first and comes down at feed.
     let input = format!("{HEAD}RAPID\nGOTO/10,10,2\nGOTO/10,10,-3\nLOADTL/2\nGOTO/10,10,-8\nFINI\n");
     for (dialect, block) in [
-        ("sinumerik", "G0 X10 Y10\nN200 G1 Z-3 F500\nN210 Z-8\n"),
+        ("sinumerik", "G0 X10 Y10\nN210 G1 Z-3 F500\nN220 Z-8\n"),
         ("heidenhain", "L X+10 Y+10 R0 FMAX\n30 L Z-3 F500\n31 L Z-8\n"),
         ("mazak", "G0 X10. Y10.\nG1 G43 H2 Z-3. F500.\nZ-8.\n"),
     ] {

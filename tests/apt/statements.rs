@@ -67,7 +67,7 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "LOADTL/4\nSPINDL/ON", Warned("cut-first")),
     ("iso", "LOADTL/0\nSPINDL/ON", Refused("tool-zero")),
     ("iso", "LOADTL/4", Warned("spindle-missing")),
-    ("iso", "COOLNT/ON\nLOADTL/4\nSPINDL/ON", Warned("coolant-missing")),
+    ("iso", "COOLNT/ON\nLOADTL/4\nSPINDL/ON\nRAPID\nGOTO/0,0,10", Read("\ntool 4\nspindle 500\n")),
     ("iso", "LOADTL/4,1,LENGTH,100", Warned("tool-arguments")),
     ("iso", "^RAPID\nGOTO/0,0,90\nLOADTL/4", Warned("moves-before-tool")),
     ("iso", "LOADTL/4\nLOADTL/4", Warned("tool-repeated")),

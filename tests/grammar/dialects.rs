@@ -45,7 +45,7 @@ fn bare(name: &str) -> Machine {
         _ => "",
     };
     machine(&format!(
-        "extends = \"{name}\"\n{own}[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nfooter = []\nclose = []\n"
+        "extends = \"{name}\"\n{own}[axis.A]\nkind = \"modulo\"\n[program]\nheader = []\nstart = []\nfooter = []\nclose = []\n"
     ))
 }
 

@@ -41,6 +41,8 @@ impl Terms {
             &frame.spindle,
             &frame.tool_spindle,
             &frame.coolant,
+            &frame.start,
+            &frame.unwind,
             &frame.home,
             &frame.coolant_stop,
             &frame.spindle_stop,
@@ -138,6 +140,7 @@ impl Terms {
                     ("rpm", "3000"),
                     ("home", &self.home),
                     ("words", "A90"),
+                    ("axis", "A"),
                     ("seconds", "2.5"),
                     ("first", "90"),
                     ("second", "-12.5"),
@@ -156,7 +159,7 @@ fn is_filled_in(template: &Template, line: &str) -> bool {
         values.iter().all(|(variable, value)| match variable.as_str() {
             "tool" => value.bytes().all(|b| b.is_ascii_digit()),
             "label" | "i" | "number" => value.bytes().all(|b| b.is_ascii_digit()),
-            "home" | "words" => value.starts_with(|c: char| c.is_ascii_uppercase()),
+            "home" | "words" | "axis" => value.starts_with(|c: char| c.is_ascii_uppercase()),
             "first" | "second" | "third" => {
                 value.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-'))
             }

@@ -136,7 +136,7 @@ fn a_report_names_the_line() {
         (
             "conical-mill/sinumerik.mpf",
             [Edit::Put("Z0 F200", 1, "Z0")],
-            "29: Feed: no feed is in force for this move",
+            "32: Feed: no feed is in force for this move",
         ),
         (
             "cylinder/heidenhain-spl.h",

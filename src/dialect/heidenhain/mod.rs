@@ -64,7 +64,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, Parameter, Round, is_device};
 use crate::geom::arc::Plane;
 
 /// The dialect.
@@ -81,7 +81,8 @@ pub const DIALECT: Dialect = Dialect {
         Motion { name: "linear", form: Form::Lines, about: "L", needs: "" },
     ],
     nurbs: None,
-    naming: ("1 to 24 letters, digits, underscores and hyphens", is_name),
+    naming: ("1 to 24 letters, digits, underscores and hyphens; not that of a device (CON, COM1)", is_name),
+    file_names: true,
     parameter: Parameter { letter: 'Q', assign: "FN 0: Q{n}={value}", word: |n| format!("Q{n}") },
     granted: &[
         Granted { what: "coordinates are in mm", right: &["MM"], wrong: &["INCH"] },
@@ -102,6 +103,8 @@ pub const DIALECT: Dialect = Dialect {
     },
     direction: ["TX", "TY", "TZ"],
     turn: None,
+    directed_places: true,
+    free_axes: None,
     second_curve: false,
     write: write::write,
     read: read::read,
@@ -109,6 +112,7 @@ pub const DIALECT: Dialect = Dialect {
 
 /// A file name that every version takes: the controls allow a few signs more.
 fn is_name(name: &str) -> bool {
-    (1..=24).contains(&name.len())
+    !is_device(name)
+        && (1..=24).contains(&name.len())
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-'))
 }

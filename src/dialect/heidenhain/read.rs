@@ -192,7 +192,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     reader.flush();
     reader.warn();
     frame.finish(text.len(), &mut reader.assembler);
-    let (header, footer) = (frame.header_complete(), frame.footer_complete());
+    let (header, footer) = (frame.start_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
     let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
     Ok(Warned { value: reading, warnings: warned.warnings })
@@ -253,6 +253,10 @@ impl<'t> Reader<'t, '_> {
                 "C" => self.arc(&block, first.number, head, span),
                 "LN" => {
                     if let Some(named) = self.assembler.direction(block.direction, head.clone()) {
+                        if (0..3).any(|i| block.named().iter().all(|(axis, _)| *axis != i)) {
+                            let message = "LN states X, Y and Z in every block, and one is missing here";
+                            return self.assembler.error("place-incomplete", message, head);
+                        }
                         for (axis, units) in named {
                             block.named[block.count] = (axis, units);
                             block.count += 1;

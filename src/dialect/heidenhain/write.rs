@@ -50,6 +50,7 @@ impl Writer<'_> {
         let (parts, feeds) = parts(self.decimals, self.modal.machine);
         self.modal.parameters(&feeds);
         for part in parts {
+            self.unwind(&part);
             match part {
                 Part::Fixed(line) => {
                     self.block(&line);
@@ -81,6 +82,30 @@ impl Writer<'_> {
         }
     }
 
+    /// Counts an axis that went round in steps below 360 degrees again, behind the last of them and before anything names it: from
+    /// 1080 degrees on `A+0` turns back by three turns. A retraction comes first, so that the tool does not stand in the work.
+    fn unwind(&mut self, part: &Part) {
+        for i in 0..self.modal.machine.axes.count() {
+            let goes_on = match part {
+                Part::Rapid(targets) => targets.iter().all(|(axis, _)| *axis != i),
+                Part::Cut(cut) => {
+                    matches!(&cut.curve, Written::Lines(points) if self.modal.goes_round(points, i))
+                }
+                Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::TipControl(_) | Part::Plane => true,
+                Part::Shift(_) | Part::Body | Part::Fixed(_) | Part::Remark(_) | Part::Comment(_) => {
+                    self.goes_on
+                }
+            };
+            if self.modal.wound[i] && !goes_on {
+                self.modal.wound[i] = false;
+                let axis = self.modal.machine.axes.name(i);
+                for line in &self.modal.machine.frame.unwind {
+                    self.block(&line.fill(&[("axis", axis.as_str())]));
+                }
+            }
+        }
+    }
+
     fn remark(&mut self, text: &str) {
         if self.modal.machine.text.number_comments {
             self.modal.begin("");
@@ -88,6 +113,15 @@ impl Writer<'_> {
         self.modal.text("; ");
         self.modal.text(text);
         self.modal.end();
+    }
+
+    /// The places of a straight block: all of them beside the tool's direction, since LN takes no fewer.
+    fn places(&mut self, point: &[i64]) {
+        if self.modal.direction.is_some() {
+            point.iter().enumerate().for_each(|(i, units)| self.modal.axis(i, *units));
+        } else {
+            self.modal.moved_axes(point);
+        }
     }
 
     /// The word of a straight block: with the tool's direction LN.
@@ -109,7 +143,7 @@ impl Writer<'_> {
         for point in points.units.chunks_exact(points.stride) {
             self.modal.begin("");
             self.straight();
-            self.modal.moved_axes(point);
+            self.places(point);
             self.modal.feed(feed);
             self.modal.reached(point);
             self.modal.end();

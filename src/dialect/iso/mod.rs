@@ -88,6 +88,7 @@ pub const MAZAK: Dialect = Dialect {
     ],
     nurbs: Some(NurbsRules { degrees: (1, 3), greatest_weight: 99.9999, starts_with_one: false }),
     naming: ("1 to 32 printable characters, no parentheses and no %", is_name),
+    file_names: false,
     parameter: Parameter { letter: '#', assign: "#{n}={value}", word: |n| format!("#{n}") },
     granted: &[
         Granted { what: "coordinates are absolute", right: &["G90"], wrong: &["G91"] },
@@ -117,6 +118,8 @@ pub const MAZAK: Dialect = Dialect {
     },
     direction: ["I", "J", "K"],
     turn: None,
+    directed_places: false,
+    free_axes: None,
     second_curve: false,
     write: write::write,
     read: read::read,

@@ -184,7 +184,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     }
     reader.flush();
     frame.finish(text.len(), &mut reader.assembler);
-    let (header, footer) = (frame.header_complete(), frame.footer_complete());
+    let (header, footer) = (frame.start_complete(), frame.footer_complete());
     let warned = reader.assembler.finish()?;
     let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
     Ok(Warned { value: reading, warnings: warned.warnings })

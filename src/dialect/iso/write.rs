@@ -65,6 +65,12 @@ impl Writer<'_> {
     /// A line of fixed words. It stands in X Y.
     fn line(&mut self, text: &str) {
         self.leave_plane();
+        // What follows may be the end, or another section, which count F a minute.
+        if self.modal.is_timed() {
+            self.modal.begin("N");
+            self.modal.inverse(false);
+            self.modal.end();
+        }
         if is_block(text) || (text.starts_with('(') && self.modal.machine.text.number_comments) {
             self.modal.begin("N");
         }
@@ -165,6 +171,9 @@ impl Writer<'_> {
     fn rapid(&mut self, targets: &[(usize, Decimal)]) {
         self.modal.begin("N");
         self.modal.motion("G0");
+        if self.modal.is_timed() {
+            self.modal.inverse(false);
+        }
         if targets.iter().any(|(axis, _)| Some(*axis) == self.z) {
             let again = self.offset_again.take();
             if let Some(tool) = self.offset_due.take().or(again) {
@@ -281,7 +290,7 @@ mod tests {
     use crate::{Failure, Options, Output};
     use proptest::prelude::*;
 
-    const PAPER: &str = "name = \"CONE10\"\n[cutter]\nD1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nflutes = 2\n\
+    const PAPER: &str = "name = \"CONE10\"\nnumber = 1\n[cutter]\nD1 = 10\nS = 30\nC = 5\nr = 8\nlength = 30\nflutes = 2\n\
         [process]\nfeed = 200\nspindle = 3000\nretract = { axis = \"Z\", to = 50 }\n";
 
     fn machine(text: &str) -> Machine {

@@ -81,7 +81,7 @@ mod read;
 mod words;
 mod write;
 
-use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
+use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round, is_device};
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
@@ -120,9 +120,10 @@ pub const DIALECT: Dialect = Dialect {
     // SD=2 is read in two ways, so that it is never written; PW is 0 to 3, and the first point has no block.
     nurbs: Some(NurbsRules { degrees: (3, 3), greatest_weight: 3.0, starts_with_one: true }),
     naming: (
-        "1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter",
+        "1 to 24 letters, digits and underscores, the first two letters or an underscore and a letter; not that of a device (CON, COM1) or of a cycle (CYCLE800), nor in the control's own form (_N_, _MPF)",
         is_name,
     ),
+    file_names: true,
     parameter: Parameter { letter: 'R', assign: "R{n}={value}", word: |n| format!("=R{n}") },
     granted: &[
         Granted { what: "coordinates are absolute", right: &["G90"], wrong: &["G91"] },
@@ -147,6 +148,8 @@ pub const DIALECT: Dialect = Dialect {
     },
     direction: ["A3=", "B3=", "C3="],
     turn: Some(["ORIVECT", "ORIAXES"]),
+    directed_places: false,
+    free_axes: Some("MD22430"),
     second_curve: true,
     write: write::write,
     read: read::read,
@@ -158,8 +161,16 @@ fn takes_planes(machine: &Machine) -> bool {
     machine.arc_planes && machine.axes.direction().is_none()
 }
 
-/// *NC Programming* 12.19 p.42.
+/// *NC Programming* 12.19 p.42. A program of a cycle's name would be what its own call finds; `_N_` and `_MPF` are what the
+/// control puts round a name.
 fn is_name(name: &str) -> bool {
+    let capitals = name.to_ascii_uppercase();
+    let cycle =
+        capitals.strip_prefix("CYCLE").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    let internal = capitals.starts_with("_N_") || capitals.ends_with("_MPF") || capitals.ends_with("_SPF");
+    if is_device(name) || cycle || internal {
+        return false;
+    }
     let bytes = name.as_bytes();
     let letter = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_alphabetic);
     bytes.len() <= 24

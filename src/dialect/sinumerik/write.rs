@@ -88,7 +88,11 @@ impl Writer<'_> {
         self.modal.parameters(&feeds);
         for part in parts {
             match part {
-                Part::Fixed(line) => self.block(&line),
+                Part::Fixed(line) => {
+                    // A second curve leads the tool between splines only.
+                    self.lead(false);
+                    self.block(&line);
+                }
                 // A program can be restarted at each tool.
                 Part::Tool(..) => self.forget(),
                 Part::Spindle => {}

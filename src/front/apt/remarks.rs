@@ -3,6 +3,7 @@
 use super::reader::Reader;
 use super::statement::number;
 use crate::diagnostic::Diagnostic;
+use crate::machine::remark::ACCENTS;
 use crate::source::Span;
 
 /// Where a matrix of CATIA stands: after `$$*CATIA0` come a name and three rows.
@@ -43,50 +44,6 @@ pub(super) fn plain(text: &str) -> String {
     }
     plain
 }
-
-/// Letters and what they become.
-const ACCENTS: &[(&str, &str)] = &[
-    ("ÀÁÂÃÅĄ", "A"),
-    ("àáâãåą", "a"),
-    ("Ä", "Ae"),
-    ("ä", "ae"),
-    ("Ö", "Oe"),
-    ("ö", "oe"),
-    ("Ü", "Ue"),
-    ("ü", "ue"),
-    ("ß", "ss"),
-    ("ÇČĆ", "C"),
-    ("çčć", "c"),
-    ("ÈÉÊËĘĚ", "E"),
-    ("èéêëęě", "e"),
-    ("ÌÍÎÏ", "I"),
-    ("ìíîï", "i"),
-    ("ÑŃŇ", "N"),
-    ("ñńň", "n"),
-    ("ÒÓÔÕØ", "O"),
-    ("òóôõø", "o"),
-    ("ÙÚÛŮ", "U"),
-    ("ùúûů", "u"),
-    ("ÝŸ", "Y"),
-    ("ýÿ", "y"),
-    ("ŠŚ", "S"),
-    ("šś", "s"),
-    ("ŽŹŻ", "Z"),
-    ("žźż", "z"),
-    ("Ł", "L"),
-    ("ł", "l"),
-    ("Æ", "AE"),
-    ("æ", "ae"),
-    ("Œ", "OE"),
-    ("œ", "oe"),
-    ("°", "deg"),
-    ("µμ", "u"),
-    ("²", "2"),
-    ("³", "3"),
-    ("–—", "-"),
-    ("‘’", "'"),
-    ("“”", "\""),
-];
 
 impl Reader<'_> {
     /// One remark, without `$$`.

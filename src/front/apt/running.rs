@@ -1,7 +1,8 @@
 //! Whether a tool is in the spindle, the spindle turns and the coolant flows where something is cut.
 //!
-//! A tool change stops spindle and coolant on most machines, and what was on before it holds for the tool before it: a file that
-//! does not say them again is written as it stands, with a warning.
+//! A tool change stops the spindle on most machines, and a speed before it is that of the tool before it: a file that does not
+//! say it again is written as it stands, with a warning. Coolant that flows is to flow for the next tool too, until the file ends
+//! it; `pass::place` stops it for the change.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ir::{Curve, Step};
@@ -29,8 +30,6 @@ pub(super) enum Coolant {
     Off,
     /// It was started.
     Flows,
-    /// It was on, and a tool was called.
-    Called,
 }
 
 /// What is new since the last move.
@@ -72,9 +71,6 @@ impl Running {
         self.tool = Some(number);
         self.new = Some(New::Tool);
         self.spindle(Spindle::Called);
-        if self.coolant != Coolant::Off {
-            self.coolant = Coolant::Called;
-        }
     }
 
     /// The call of the tool once more, and what has to be said behind it.
@@ -138,13 +134,6 @@ impl Running {
                     .at(span, "")
                     .hint("SPINDL behind the tool call starts it; a tool change stops it"),
             );
-        }
-        if self.coolant == Coolant::Called {
-            self.coolant = Coolant::Off;
-            let message = format!("{tool}the coolant, on before it was called, is not started again");
-            self.diagnostics.push(Diagnostic::warning("coolant-missing", message).at(span, "").hint(
-                "COOLNT/ON behind the tool call starts it; COOLNT/OFF before says that it is to be off",
-            ));
         }
     }
 }

@@ -65,7 +65,7 @@ pub(super) struct File {
     /// The program's name, 1 to 64 printable ASCII characters; each control has rules of its own. Default CUTTER.
     #[schemars(with = "Option<String>")]
     pub(super) name: Option<Spanned<String>>,
-    /// The program's number, 1 to 9999, where the control wants one. Default 1.
+    /// The program's number, 1 to 9999, where the control wants one. Default 1, with a warning.
     #[schemars(with = "Option<i64>")]
     pub(super) number: Option<Spanned<i64>>,
     /// The cutter as its drawing states it.

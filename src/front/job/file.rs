@@ -60,7 +60,7 @@ pub(super) struct File {
     /// The program's name, 1 to 64 printable ASCII characters; each control has rules of its own. Default JOB.
     #[schemars(with = "Option<String>")]
     pub(super) name: Option<Spanned<String>>,
-    /// The program's number, 1 to 9999, where the control wants one. Default 1.
+    /// The program's number, 1 to 9999, where the control wants one. Default 1, with a warning.
     #[schemars(with = "Option<i64>")]
     pub(super) number: Option<Spanned<i64>>,
     /// Greatest deviation from the curves, mm. Default: the machine's.

@@ -5,20 +5,20 @@ use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
 use crate::geom::rotation::Order;
 use crate::machine::keys::{
-    ArcsFile, AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile, TextFile,
+    ArcsFile, AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile,
 };
 use crate::machine::template::Template;
 use crate::machine::{
-    AxisLimits, Digits, FirstPoint, Frame, LineEnd, Machine, Moves, Orientation, Parameters, PlaneApproach,
-    Spline, Text, Turn,
+    AxisLimits, Digits, FirstPoint, Frame, Machine, Moves, Orientation, Parameters, PlaneApproach, Spline,
+    Turn,
 };
 use crate::source::Span;
 use crate::units::{Axes, Axis};
 use std::collections::BTreeMap;
 use toml::Spanned;
 
-/// Controls take block numbers of up to eight figures.
-const GREATEST_NUMBER: u32 = 99_999_999;
+/// The numbers of X Y Z of third degree: each its end and two coefficients.
+const LEAST_POLY_WORDS: usize = 9;
 
 impl Reader {
     /// What the file says of each axis, over what the machine below it says.
@@ -128,6 +128,12 @@ impl Reader {
         {
             self.error("degree-range", "poly_degree is 3 to 5", degree.span());
         }
+        if let Some(words) = &file.poly_words
+            && !(LEAST_POLY_WORDS..=100).contains(words.get_ref())
+        {
+            let message = format!("poly_words is {LEAST_POLY_WORDS} to 100: X Y Z of third degree take nine");
+            self.error("words-range", message, words.span());
+        }
         if let Some(blocks) = &file.bspline_min_blocks
             && 1000 < *blocks.get_ref()
         {
@@ -158,6 +164,11 @@ impl Reader {
                 file.poly_degree.map(Spanned::into_inner),
                 base.map(|b| b.poly_degree),
                 "spline.poly_degree",
+            )?,
+            poly_words: self.or(
+                file.poly_words.map(Spanned::into_inner),
+                base.map(|b| b.poly_words),
+                "spline.poly_words",
             )?,
             shared_parameter: self.or(
                 file.shared_parameter,
@@ -406,54 +417,6 @@ impl Reader {
         Some(lines)
     }
 
-    pub(super) fn text(&mut self, file: TextFile, base: Option<&Text>) -> Option<Text> {
-        let line_end = match &file.line_end {
-            None => self.or(None, base.map(|b| b.line_end), "text.line_end")?,
-            Some(word) => match word.get_ref().as_str() {
-                "lf" => LineEnd::Lf,
-                "crlf" => LineEnd::CrLf,
-                _ => {
-                    self.error("line-end", "line_end is \"lf\" or \"crlf\"", word.span());
-                    LineEnd::Lf
-                }
-            },
-        };
-        if let Some(length) = &file.comment_length
-            && !(20..=500).contains(length.get_ref())
-        {
-            self.error("comment-length", "comment_length is 20 to 500", length.span());
-        }
-        let length = file.comment_length.map(Spanned::into_inner);
-        Some(Text {
-            point_always: self.or(file.point_always, base.map(|b| b.point_always), "text.point_always")?,
-            sign_always: self.or(file.sign_always, base.map(|b| b.sign_always), "text.sign_always")?,
-            leading_zero: self.or(file.leading_zero, base.map(|b| b.leading_zero), "text.leading_zero")?,
-            spaces: self.or(file.spaces, base.map(|b| b.spaces), "text.spaces")?,
-            number_start: self.block_number(
-                file.number_start,
-                base.map(|b| b.number_start),
-                "number_start",
-            )?,
-            number_step: self.block_number(file.number_step, base.map(|b| b.number_step), "number_step")?,
-            number_comments: self.or(
-                file.number_comments,
-                base.map(|b| b.number_comments),
-                "text.number_comments",
-            )?,
-            line_end,
-            comment_length: self.or(length, base.map(|b| b.comment_length), "text.comment_length")?,
-            extension: self.or(file.extension, base.map(|b| b.extension.clone()), "text.extension")?,
-        })
-    }
-
-    /// A block number, or a step between two.
-    fn block_number(&mut self, own: Option<Spanned<u32>>, base: Option<u32>, key: &str) -> Option<u32> {
-        if let Some(number) = own.as_ref().filter(|number| GREATEST_NUMBER < *number.get_ref()) {
-            self.error("block-number-range", format!("{key} is at most {GREATEST_NUMBER}"), number.span());
-        }
-        self.or(own.map(Spanned::into_inner), base, &format!("text.{key}"))
-    }
-
     pub(super) fn parameters(
         &mut self,
         file: &ParameterFile,
@@ -481,6 +444,7 @@ impl Reader {
         Some(Frame {
             header: lines(self, file.header, |b| &b.header, "header", &["name", "number", "linear"])?,
             setup: self.or(file.setup, base.map(|b| b.setup), "program.setup")?,
+            start: lines(self, file.start, |b| &b.start, "start", &[])?,
             home: lines(self, file.home, |b| &b.home, "home", &["home"])?,
             tool: lines(self, file.tool, |b| &b.tool, "tool", &["tool"])?,
             spindle: lines(self, file.spindle, |b| &b.spindle, "spindle", &["rpm"])?,
@@ -508,6 +472,7 @@ impl Reader {
             plane: lines(self, file.plane, |b| &b.plane, "plane", &["first", "second", "third", "tool"])?,
             plane_end: lines(self, file.plane_end, |b| &b.plane_end, "plane_end", &[])?,
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
+            unwind: lines(self, file.unwind, |b| &b.unwind, "unwind", &["axis"])?,
             footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
             subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,
             call: self.line(file.call, base.map(|b| &b.call), "call", dialect)?,

@@ -27,6 +27,7 @@ fn cancels(words: &[&str]) -> bool {
     matches!(
         words,
         ["M127" | "M129"]
+            | ["L", "M94", "A" | "B" | "C"]
             | ["PLANE", "RESET", "STAY"]
             | ["CYCL", "DEF", "8.0", "MIRROR", "IMAGE"]
             | ["CYCL", "DEF", "8.1"]
@@ -76,6 +77,7 @@ fn klartext(line: usize, text: &str) -> Block {
         }
         ["END", "PGM", name, "MM" | "INCH"] => block.words.push(Word::Close((*name).to_owned())),
         ["TOOL", "CALL", call @ ..] => tool_call(&mut block, call),
+        words if cancels(words) => {}
         ["L", words @ ..] => {
             let motion = if words.contains(&"FMAX") { Motion::Rapid } else { Motion::Line };
             block.motion(motion, "L");
@@ -101,7 +103,6 @@ fn klartext(line: usize, text: &str) -> Block {
         ["LBL", label] => block.flow = Some(Flow::Label((*label).to_owned())),
         ["M5"] => block.words.push(Word::Stop),
         ["M30" | "M2"] => block.words.push(Word::Finish),
-        words if cancels(words) => {}
         words => block.fault(&words.join(" ")),
     }
     block

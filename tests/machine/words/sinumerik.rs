@@ -17,9 +17,9 @@ fn block(line: usize, text: &str) -> Block {
     }
     let mut said = words.iter().copied().skip_while(numbers);
     let first = said.next().expect("not all are numbers");
-    if first == "REPEAT" {
-        match (said.next(), said.next(), said.next()) {
-            (Some(from), Some(to), None) => {
+    if first == "CALL" {
+        match (said.next(), said.next(), said.next(), said.next(), said.next()) {
+            (Some("BLOCK"), Some(from), Some("TO"), Some(to), None) => {
                 block.flow = Some(Flow::Call(from.to_owned(), Some(to.to_owned())));
             }
             _ => block.fault(code),
@@ -83,12 +83,13 @@ fn word(block: &mut Block, word: &str) {
         "POLY" => return block.motion(Motion::Poly, word),
         "BSPLINE" => return block.motion(Motion::Bspline, word),
         "ASPLINE" | "CSPLINE" => return block.motion(Motion::Through, word),
-        "TRAFOOF" | "TRANS" | "MCALL" | "G54" | "G64" | "COMPOF" => return,
+        "TRAFOOF" | "TRANS" | "MCALL" | "G54" | "G64" | "COMPOF" | "CYCLE800()" | "FGROUP()" => return,
         "SUPA" => return block.machine = true,
         "G17" => Word::State(State::Plane),
         "G18" | "G19" => Word::Other(State::Plane),
-        "G71" => Word::State(State::Millimetres),
-        "G70" => Word::Other(State::Millimetres),
+        // Under G71 F stays in the unit that the machine is set to.
+        "G710" => Word::State(State::Millimetres),
+        "G70" | "G71" | "G700" => Word::Other(State::Millimetres),
         "G90" => Word::State(State::Absolute),
         "G91" => Word::Incremental,
         "G94" => Word::State(State::FeedPerMinute),

@@ -9,7 +9,7 @@ use crate::verify::to_nurbs;
 fn fragment(text: &str) -> Result<Warned<Reading>, Diagnostics> {
     let machine = Machine::parse(
         "extends = \"sinumerik\"\n[axes]\nlinear = [\"X\", \"Y\"]\nrotary = []\n\
-         [program]\nheader = []\ntool = []\nspindle = []\nfooter = []\n",
+         [program]\nheader = []\nstart = []\ntool = []\nspindle = []\nfooter = []\n",
         SourceId::INPUT,
     )?;
     read(text, SourceId::INPUT, &machine)
