@@ -178,7 +178,7 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
     // Writing to a String cannot fail.
     let _ = match step {
         Step::Comment(comment) => writeln!(text, "comment {comment}"),
-        Step::Tool(number) => writeln!(text, "tool {number}"),
+        Step::Tool(call) => writeln!(text, "{call}"),
         Step::Spindle(rpm) => writeln!(text, "spindle {rpm}"),
         Step::Coolant => writeln!(text, "coolant"),
         Step::Auxiliary(auxiliary) => match auxiliary {

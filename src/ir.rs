@@ -25,6 +25,7 @@ use crate::geom::deviation::Bound;
 use crate::source::Span;
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 use std::borrow::Borrow;
+use std::fmt;
 
 /// A program: a name, its coordinates, its steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +62,7 @@ pub enum Step<N, C> {
     /// A remark for the reader, and the start of a section.
     Comment(String),
     /// A tool is called.
-    Tool(u32),
+    Tool(ToolCall),
     /// The spindle turns clockwise, rev/min.
     Spindle(N),
     /// The coolant flows.
@@ -94,6 +95,44 @@ impl<N, C> Step<N, C> {
             | Step::Auxiliary(_)
             | Step::Rapid(_) => None,
         }
+    }
+}
+
+/// A tool, and the register that its length is taken from: H of `G43 H12`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ToolCall {
+    /// The tool's number.
+    pub number: u32,
+    register: u32,
+}
+
+impl ToolCall {
+    /// A tool with its own length: the register has the number of the tool, where the control has such registers at all.
+    pub fn own(number: u32) -> ToolCall {
+        ToolCall { number, register: number }
+    }
+
+    /// The same tool with the length of another register.
+    #[must_use]
+    pub fn with_register(self, register: u32) -> ToolCall {
+        ToolCall { register, ..self }
+    }
+
+    /// The register of its length.
+    pub fn register(self) -> u32 {
+        self.register
+    }
+
+    /// Whether its length is that of its own number.
+    pub fn is_own(self) -> bool {
+        self.register == self.number
+    }
+}
+
+impl fmt::Display for ToolCall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tool {}", self.number)?;
+        if self.is_own() { Ok(()) } else { write!(f, " with the length of register {}", self.register) }
     }
 }
 

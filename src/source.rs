@@ -90,6 +90,8 @@ pub struct Sources {
     pub words: Option<SourceId>,
     /// Whether words of the input that are not understood are left out with a warning.
     pub lenient: bool,
+    /// mm in the unit of CL data that state none, where that was told.
+    pub units: Option<f64>,
 }
 
 impl Sources {

@@ -186,7 +186,7 @@ impl Translation<'_> {
     fn step(&self, located: &Located<Decimal, Written>) -> Result<Option<Step<f64, Curve>>, Diagnostics> {
         Ok(Some(match &located.step {
             Step::Comment(text) => Step::Comment(text.clone()),
-            Step::Tool(number) => Step::Tool(*number),
+            Step::Tool(call) => Step::Tool(*call),
             Step::Spindle(rpm) => Step::Spindle(rpm.to_f64()),
             Step::Coolant => Step::Coolant,
             Step::Home(axis) => return Ok(self.index(*axis).map(Step::Home)),

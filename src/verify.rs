@@ -138,9 +138,8 @@ pub fn verify(
                 cursor.meet(&what, |step| matches!(step, Step::Home(read) if read == axis))?;
             }
             Step::Shift(shifts) => cursor.shift(shifts)?,
-            Step::Tool(number) => {
-                cursor
-                    .meet(&format!("tool {number}"), |step| matches!(step, Step::Tool(n) if n == number))?;
+            Step::Tool(call) => {
+                cursor.meet(&call.to_string(), |step| matches!(step, Step::Tool(read) if read == call))?;
             }
             Step::Spindle(rpm) => {
                 let rounded = Decimal::round(*rpm, machine.digits.feed);

@@ -272,6 +272,7 @@ fn cl_data_goes_the_same_way() {
     // As another system the arcs go the other way, which their neighbours contradict.
     let output = run(&["dump", &input, "--from", "nx"]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("arc Xy Clockwise"));
+    assert!(stderr(&output).contains("warning[arc-sense]"), "{}", stderr(&output));
     // What nobody knows: an error, a warning, or what the shop says.
     let text = "UNITS/MM\nFEDRAT/9\nFROBNI/1\nGOTO/1,2,3\nGOTO/1,2,4\n";
     fs::write(within.join("a.cl"), text).expect("written");

@@ -191,12 +191,31 @@ pub(super) struct Reading {
     /// Leave out words of CL data that are not understood, with a warning
     #[arg(long)]
     lenient: bool,
+    /// The unit of CL data that state none
+    #[arg(long, value_name = "UNIT")]
+    units: Option<Unit>,
+}
+
+/// Millimetres in an inch.
+const MM_PER_INCH: f64 = 25.4;
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Unit {
+    /// Millimetres
+    Mm,
+    /// Inches
+    Inches,
 }
 
 impl Reading {
     /// Tells it to whoever reads the sources.
     pub(super) fn tell(&self, sources: &mut Sources) -> Result<(), Diagnostics> {
         sources.lenient = self.lenient;
+        sources.units = self.units.map(|unit| match unit {
+            Unit::Mm => 1.0,
+            Unit::Inches => MM_PER_INCH,
+        });
         if let Some(path) = &self.words {
             let source = io::read_source(path)?;
             sources.words = Some(sources.push(source));

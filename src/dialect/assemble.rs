@@ -6,7 +6,7 @@
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::ir::{
-    Auxiliary, Cut, Decimals, Located, Program, Role, Shift, Step, Units, Written, WrittenPoints,
+    Auxiliary, Cut, Decimals, Located, Program, Role, Shift, Step, ToolCall, Units, Written, WrittenPoints,
 };
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -62,6 +62,8 @@ pub struct Assembler<'m> {
     run: Option<(WrittenPoints, Span)>,
     run_feed: Option<Decimal>,
     led: bool,
+    /// The tool that was called last, and whether a line named the register of its length.
+    tool: Option<(ToolCall, bool)>,
     /// Which axes the cuts so far name.
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.
@@ -104,6 +106,7 @@ impl<'m> Assembler<'m> {
             run: None,
             run_feed: None,
             led: false,
+            tool: None,
             named: [false; MAX_AXES],
             unknown: None,
             missing: [None; MAX_AXES],
@@ -277,18 +280,30 @@ impl<'m> Assembler<'m> {
     }
 
     /// The tool that was called last.
-    pub fn tool(&self) -> Option<u32> {
-        self.steps.iter().rev().find_map(|located| match located.step {
-            Step::Tool(number) => Some(number),
-            Step::Comment(_)
-            | Step::Spindle(_)
-            | Step::Coolant
-            | Step::Home(_)
-            | Step::Shift(_)
-            | Step::Auxiliary(_)
-            | Step::Rapid(_)
-            | Step::Cut(_) => None,
-        })
+    pub fn tool(&self) -> Option<ToolCall> {
+        self.tool.map(|(call, _)| call)
+    }
+
+    /// Whether this tool was called last.
+    pub fn has_tool(&self, number: u32) -> bool {
+        self.tool().is_some_and(|call| call.number == number)
+    }
+
+    /// Takes the length of the tool that was called last from a register: the first line that names one says which it is.
+    /// False where another line did, or no tool was called.
+    pub fn takes_register(&mut self, register: u32) -> bool {
+        let Some((call, known)) = &mut self.tool else { return false };
+        if *known {
+            return call.register() == register;
+        }
+        *call = call.with_register(register);
+        *known = true;
+        let call = *call;
+        let called = self.steps.iter_mut().rev().find(|located| matches!(located.step, Step::Tool(_)));
+        if let Some(located) = called {
+            located.step = Step::Tool(call);
+        }
+        true
     }
 
     /// Whether the last step is that the tip is led from here on.
@@ -332,12 +347,12 @@ impl<'m> Assembler<'m> {
     /// Adds a step that is no move.
     pub fn step(&mut self, step: Step<Decimal, Written>, span: Span) {
         match &step {
+            Step::Tool(call) => self.tool = Some((*call, false)),
             Step::Auxiliary(Auxiliary::TipControl) => self.led = true,
             Step::Auxiliary(Auxiliary::TipControlEnd) => self.led = false,
             Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => self.position = [None; MAX_AXES],
             Step::Auxiliary(_)
             | Step::Comment(_)
-            | Step::Tool(_)
             | Step::Spindle(_)
             | Step::Coolant
             | Step::Home(_)

@@ -3,7 +3,7 @@
 use super::assemble::Assembler;
 use super::parts::home_word;
 use crate::decimal::{Decimal, read_decimal};
-use crate::ir::{Auxiliary, Shift, Step};
+use crate::ir::{Auxiliary, Shift, Step, ToolCall};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 use crate::source::Span;
@@ -336,13 +336,13 @@ impl<'m> Frame<'m> {
                     if [&frame.tip_control, &frame.plane].iter().any(|lines| lines.first() == Some(template))
                     {
                         // The length of the tool that leads its tip, or stands square to a plane.
-                        if assembler.tool() != Some(number) {
+                        if !assembler.has_tool(number) {
                             let message = format!("tool {number} was not called before it is tilted");
                             assembler.error("tool-offset", message, span.start as usize..span.end as usize);
                         }
                     } else if first {
-                        assembler.step(Step::Tool(number), span);
-                    } else if assembler.tool() != Some(number) {
+                        assembler.step(Step::Tool(ToolCall::own(number)), span);
+                    } else if !assembler.has_tool(number) {
                         // A line that follows, as `G43 H{tool}`, names the same tool or is another line.
                         return false;
                     }
@@ -353,6 +353,13 @@ impl<'m> Frame<'m> {
                     }
                     // What follows counts from there.
                     assembler.end_run();
+                }
+                "register" => {
+                    let Ok(register) = value.parse::<u32>() else { return false };
+                    if !assembler.takes_register(register) {
+                        let message = format!("the tool does not have the length of register {register}");
+                        assembler.error("tool-offset", message, span.start as usize..span.end as usize);
+                    }
                 }
                 "home" => {
                     let axes = 0..self.machine.axes.count();

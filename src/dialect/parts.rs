@@ -6,7 +6,7 @@
 use super::alike;
 use super::modal::Modal;
 use crate::decimal::{Decimal, Spelling};
-use crate::ir::{Auxiliary, Cut, Decimals, Located, Shift, Step, Written};
+use crate::ir::{Auxiliary, Cut, Decimals, Located, Shift, Step, ToolCall, Written};
 use crate::machine::Machine;
 use crate::machine::template::Template;
 
@@ -15,7 +15,7 @@ pub enum Part<'p> {
     /// A fixed line of the machine file, filled in.
     Fixed(String),
     /// The lines of a tool call are written; in one with the spindle's start, or alone.
-    Tool(u32, ToolLines),
+    Tool(ToolCall, ToolLines),
     /// The lines of the spindle's start are written.
     Spindle,
     /// The lines that retract an axis in machine coordinates are written.
@@ -64,7 +64,7 @@ pub fn parts<'p>(decimals: &'p Decimals, machine: &Machine) -> (Vec<Part<'p>>, V
         parts: Vec::new(),
         bodies: Vec::new(),
         corrections,
-        tool: 0,
+        tool: ToolCall::own(0),
         start: Some(&frame.start),
     };
     walk.fill(&frame.header, &values);
@@ -123,7 +123,7 @@ struct Walk<'p, 'm> {
     /// The parameter of each axis that has a correction.
     corrections: Vec<(usize, u32)>,
     /// The tool that was called last.
-    tool: u32,
+    tool: ToolCall,
     /// The lines behind the first retraction, where they are still to come.
     start: Option<&'m [Template]>,
 }
@@ -167,19 +167,20 @@ impl<'p> Walk<'p, '_> {
                 | Step::Cut(_) => self.start(),
             }
             match &located.step {
-                Step::Tool(number) => {
-                    self.tool = *number;
-                    let tool = number.to_string();
+                Step::Tool(call) => {
+                    self.tool = *call;
+                    let (tool, register) = (call.number.to_string(), call.register().to_string());
+                    let tool = [("tool", tool.as_str()), ("register", register.as_str())];
                     match rest.first().map(|next| &next.step) {
                         Some(Step::Spindle(rpm)) if !frame.tool_spindle.is_empty() => {
                             let rpm = rpm.to_string();
-                            self.fill(&frame.tool_spindle, &[("tool", &tool), ("rpm", &rpm)]);
-                            self.parts.push(Part::Tool(*number, ToolLines::WithSpindle));
+                            self.fill(&frame.tool_spindle, &[tool[0], tool[1], ("rpm", &rpm)]);
+                            self.parts.push(Part::Tool(*call, ToolLines::WithSpindle));
                             rest = &rest[1..];
                         }
                         _ => {
-                            self.fill(&frame.tool, &[("tool", &tool)]);
-                            self.parts.push(Part::Tool(*number, ToolLines::Alone));
+                            self.fill(&frame.tool, &tool);
+                            self.parts.push(Part::Tool(*call, ToolLines::Alone));
                         }
                     }
                 }
@@ -189,7 +190,10 @@ impl<'p> Walk<'p, '_> {
                 }
                 Step::Coolant => self.fill(&frame.coolant, &[]),
                 Step::Auxiliary(auxiliary) => {
-                    let mut values = vec![("tool", self.tool.to_string())];
+                    let mut values = vec![
+                        ("tool", self.tool.number.to_string()),
+                        ("register", self.tool.register().to_string()),
+                    ];
                     let part = match auxiliary {
                         Auxiliary::CoolantStop
                         | Auxiliary::SpindleStop

@@ -311,7 +311,7 @@ impl<'a> Side<'a> {
         let name = |axis: usize| self.axes.name(axis);
         match item {
             Item::Switch(step, _) => match step {
-                Step::Tool(tool) => format!("tool {tool}"),
+                Step::Tool(call) => call.to_string(),
                 Step::Spindle(rpm) => format!("the spindle at {rpm} rev/min"),
                 Step::Coolant => "the coolant".to_owned(),
                 Step::Home(axis) => format!("{} to its home", name(*axis)),
@@ -436,7 +436,7 @@ fn items<'a, N: Copy + 'a, C: 'a>(
         let mut switch = |step| items.push(Item::Switch(step, span));
         match step {
             Step::Comment(_) => {}
-            Step::Tool(tool) => switch(Step::Tool(*tool)),
+            Step::Tool(call) => switch(Step::Tool(*call)),
             Step::Spindle(rpm) => switch(Step::Spindle(number(*rpm))),
             Step::Coolant => switch(Step::Coolant),
             Step::Auxiliary(auxiliary) => {

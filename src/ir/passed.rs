@@ -11,7 +11,7 @@ impl Step<f64, Curve> {
     pub fn borrowed(&self) -> Step<f64, Cow<'_, Curve>> {
         match self {
             Step::Comment(text) => Step::Comment(text.clone()),
-            Step::Tool(number) => Step::Tool(*number),
+            Step::Tool(call) => Step::Tool(*call),
             Step::Spindle(rpm) => Step::Spindle(*rpm),
             Step::Coolant => Step::Coolant,
             Step::Home(axis) => Step::Home(*axis),

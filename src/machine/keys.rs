@@ -373,7 +373,7 @@ pub(super) struct OrientationFile {
     pub(super) plane_approach: Option<Spanned<String>>,
 }
 
-/// The lines round a program. {name}, {tool} and {rpm} are filled in.
+/// The lines round a program. {name}, {tool}, {register} and {rpm} are filled in.
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProgramFile {
@@ -388,13 +388,13 @@ pub(super) struct ProgramFile {
     /// The retraction in machine coordinates before a tool change and at the end; {home}: the axis and its home.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) home: Option<Vec<Spanned<String>>>,
-    /// A tool call; {tool}.
+    /// A tool call; {tool}, and {register} where its length may be that of another register than the number of the tool.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tool: Option<Vec<Spanned<String>>>,
     /// The spindle's start; {rpm}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) spindle: Option<Vec<Spanned<String>>>,
-    /// Tool and spindle in one, where a control wants them so; {tool}, {rpm}.
+    /// Tool and spindle in one, where a control wants them so; {tool}, {register}, {rpm}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tool_spindle: Option<Vec<Spanned<String>>>,
     /// The coolant's start.
@@ -415,13 +415,13 @@ pub(super) struct ProgramFile {
     /// A dwell of {seconds}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) dwell: Option<Vec<Spanned<String>>>,
-    /// What leads the tip of the tool in five axes; {tool}.
+    /// What leads the tip of the tool in five axes; {tool}, {register}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tip_control: Option<Vec<Spanned<String>>>,
     /// What ends that.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tip_control_end: Option<Vec<Spanned<String>>>,
-    /// What tilts the plane in which positions count and turns the tool square to it; {first}, {second}, {third}: the angles in the order of plane_order, in one line; {tool}. Without it the tip of a tilted tool is led.
+    /// What tilts the plane in which positions count and turns the tool square to it; {first}, {second}, {third}: the angles in the order of plane_order, in one line; {tool}, {register}. Without it the tip of a tilted tool is led.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) plane: Option<Vec<Spanned<String>>>,
     /// What ends that.

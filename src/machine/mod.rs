@@ -144,6 +144,16 @@ impl Machine {
         self.home(i).is_some() && !self.frame.home.is_empty()
     }
 
+    /// Whether the length of a tool may be taken from any register: its lines have a place for the number, and no line that takes
+    /// the length again has the number of the tool.
+    pub fn has_registers(&self) -> bool {
+        let frame = &self.frame;
+        let calls = [&frame.tool, &frame.tool_spindle];
+        let again = [&frame.tip_control, &frame.plane];
+        calls.into_iter().filter(|lines| !lines.is_empty()).all(|lines| says(lines, "register"))
+            && again.into_iter().all(|lines| !says(lines, "tool"))
+    }
+
     /// Whether programs say their number.
     pub fn has_number(&self) -> bool {
         says(&self.frame.header, "number")

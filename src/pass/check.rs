@@ -4,7 +4,7 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::dialect::{ArcKind, ArcWord, Form};
 use crate::geom::bezier::Bezier;
-use crate::ir::{ArcBy, COEFFICIENTS, Circle, Decimals, PolynomialBlock, Step, Units, Written};
+use crate::ir::{ArcBy, COEFFICIENTS, Circle, Decimals, PolynomialBlock, Step, ToolCall, Units, Written};
 use crate::machine::Machine;
 use crate::pass::{limits, range};
 use crate::units::{Axes, Axis, DEGREES, MAX_AXES, Position};
@@ -18,6 +18,22 @@ impl Legal {
     pub fn decimals(&self) -> &Decimals {
         &self.0
     }
+}
+
+/// What is wrong with a tool whose length is that of another register than its own.
+fn register(call: ToolCall, machine: &Machine) -> Option<Diagnostic> {
+    if call.is_own() || machine.has_registers() {
+        return None;
+    }
+    let message = format!(
+        "{call}: the lines of machine `{}` take the length of tool {} alone",
+        machine.name, call.number
+    );
+    Some(
+        Diagnostic::refusal("tool-register", message)
+            .hint("where the control has such registers, put {register} for the number into the lines of [program] that take the length: tool = [\"T{tool} M6\", \"G43 H{register}\"]")
+            .hint("tool_register = \"left-out\" in a table for --words takes the tool's own length instead"),
+    )
 }
 
 /// The greatest change of direction at which a control neither stops nor slows, degrees (Heidenhain's figure).
@@ -46,6 +62,11 @@ pub fn check(decimals: Decimals, machine: &Machine) -> Result<Warned<Legal>, Dia
                     .at(located.span, "")
                     .hint(format!("state them in a machine file: [program] {} = [...]", auxiliary.key())),
             );
+        }
+        if let Step::Tool(call) = &located.step
+            && let Some(diagnostic) = register(*call, machine)
+        {
+            found.push(diagnostic.at(located.span, ""));
         }
         let Some(cut) = located.step.cut() else { continue };
         match form(&decimals, &cut.curve, machine) {

@@ -192,7 +192,7 @@ impl Quantiser<'_> {
         let rate = |x: f64| Decimal::round(x, self.machine.digits.feed).ok_or(Unwritable);
         Ok(match step {
             Step::Comment(text) => Step::Comment(text),
-            Step::Tool(number) => Step::Tool(number),
+            Step::Tool(call) => Step::Tool(call),
             Step::Spindle(rpm) => Step::Spindle(rate(rpm)?),
             Step::Coolant => Step::Coolant,
             Step::Auxiliary(auxiliary) => {

@@ -94,7 +94,8 @@ fn text_that_is_none() {
 
 #[test]
 fn bytes_that_are_not_utf8_are_windows_1252() {
-    let bytes = b"PARTNO PI\xc8CE\nLOADTL/1\nSPINDL/9\nFEDRAT/9\nRAPID\nGOTO/1,2,3\nGOTO/1,2,4\n".to_vec();
+    let bytes =
+        b"PARTNO PI\xc8CE\nLOADTL/1\nSPINDL/9\nFEDRAT/9,MMPM\nRAPID\nGOTO/1,2,3\nGOTO/1,2,4\n".to_vec();
     let source = Source::decode("input.cl", bytes);
     assert_eq!((source.encoding, source.text.contains("PIÈCE")), (Encoding::Windows1252, true));
     let sources = Sources::new(source);

@@ -6,7 +6,7 @@ use splinepost::machine::Machine;
 use splinepost::source::{Source, Sources};
 use splinepost::{Options, compile, front};
 
-const START: &str = "LOADTL/1\nSPINDL/500,CLW\nFEDRAT/100\nRAPID\nGOTO/0,0,10\nGOTO/0,0,0\n";
+const START: &str = "LOADTL/1\nSPINDL/500,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,10\nGOTO/0,0,0\n";
 
 fn intent(system: &str, body: &str) -> Intent {
     intent_as(system, &format!("{START}{body}\nFINI\n"), false)
@@ -103,10 +103,10 @@ fn a_file_that_contradicts_its_system_is_told() {
     }
     let body = lines.concat();
     assert!(intent("creo", &body).warnings.0.is_empty());
-    let warnings = intent("nx", &body).warnings;
-    assert_eq!(warnings.0.len(), 1);
-    assert_eq!(warnings.0[0].id, "arc-sense");
-    assert!(warnings.0[0].hints[0].contains("circle = \"right-hand\""), "{warnings:?}");
+    let errors = intent_as("nx", &format!("{START}{body}\nFINI\n"), false).expect_err("the other way round");
+    assert_eq!(errors.0.len(), 1);
+    assert_eq!(errors.0[0].id, "arc-sense");
+    assert!(errors.0[0].hints[0].contains("circle = \"right-hand\""), "{errors:?}");
 }
 
 #[test]

@@ -72,6 +72,13 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "^RAPID\nGOTO/0,0,90\nLOADTL/4", Warned("moves-before-tool")),
     ("iso", "LOADTL/4\nLOADTL/4", Warned("tool-repeated")),
     ("iso", "LOADTL/1.5", Refused("tool-number")),
+    (
+        "iso",
+        "LOADTL/4,OSETNO,9\nSPINDL/ON\nRAPID\nGOTO/0,0,10",
+        Read("\ntool 4 with the length of register 9\n"),
+    ),
+    ("iso", "LOADTL/4,OSETNO,0", Refused("tool-register")),
+    ("iso", "TOOLNO/4,OSETNO,9", Refused("tool-register")),
     ("nx", "LOAD/TOOL,4\nSPINDL/ON\nRAPID\nGOTO/0,0,10", Read("\ntool 4\nspindle 500\n")),
     ("nx", "LOAD/WIRE", Refused("wire")),
     ("iso", "SELCTL/5", Warned("word-left-out")),
@@ -90,7 +97,7 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "SPINDL/100,SFM", Refused("cutting-speed")),
     ("iso", "SPINDL/100,SMM", Refused("cutting-speed")),
     ("iso", "SPINDL/900,MAXRPM,5000", Warned("word-left-out")),
-    ("iso", "SPINDL/900,RANGE,2", Warned("word-left-out")),
+    ("iso", "SPINDL/900,RANGE,2", Refused("spindle-range")),
     ("iso", "SPINDL/ORIENT", Refused("spindle-orient")),
     ("fusion", "SPINDL / MAIN", Warned("word-left-out")),
     ("iso", "FEDRAT/200\nGOTO/0,1,0", Read("feed 200 lines")),
@@ -107,7 +114,7 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "FEDRAT/INVERS,OFF", Read("")),
     ("iso", "FEDRAT/0,MMPM", Refused("feed-range")),
     ("iso", "COOLNT/ON", Read("\ncoolant\n")),
-    ("iso", "COOLNT/FLOOD,HIGH", Read("\ncoolant\n")),
+    ("iso", "COOLNT/FLOOD,HIGH", Warned("word-left-out")),
     ("iso", "COOLNT/OFF", Read("\ncoolant stops\n")),
     ("iso", "COOLNT/ON,OFF", Refused("arguments")),
     ("iso", "COOLNT/FLOOD,MIST", Refused("arguments")),
@@ -273,7 +280,7 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("creo", "CYCLE/OFF", Read("")),
     ("creo", "CYCLE/CLEAR", Read("")),
     ("creo", "CYCLE/ON", Refused("cycle-unknown")),
-    ("iso", "CYCLE/INIT", Refused("cycle")),
+    ("iso", "CYCLE/INIT", Read("")),
     (
         "creo",
         "CYCLE/DRILL,DEPTH,3,MMPM,50,CLEAR,1\nCYCLE/OFF\nCYCLE/ON\nGOTO/5,0,0\nCYCLE/OFF",
@@ -292,11 +299,16 @@ const TABLE: &[(&str, &str, Becomes)] = &[
     ("iso", "CYCLE/DEEP,DEPTH,3,STEP,1,CLEAR,0", Refused("cycle-clear")),
     ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,0\nGOTO/5,0,0\nCYCLE/OFF", Warned("cycle-clear")),
     ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1,RTRCTO,-5\nGOTO/5,0,0\nCYCLE/OFF", Warned("cycle-retract")),
-    ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1,RTRCTO,AUTO,MANUAL\nGOTO/5,0,0\nCYCLE/OFF", Read("rapid Z 1\n")),
+    ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1,RTRCTO,AUTO\nGOTO/5,0,0\nCYCLE/OFF", Read("Z -3.0\nrapid Z 10\n")),
+    ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1,RTRCTO,AUTO,MANUAL", Refused("arguments")),
     ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1,DWELL,-2", Refused("cycle")),
     ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1\nGOTO/5,0,0\nGODLTA/5,0,0", Refused("cycle-increment")),
     ("iso", "CYCLE/OFF,5", Refused("arguments")),
-    ("iso", "CYCLE/DRILL,DEPTH,3,CLEAR,1\nCYCLE/ON,CLEAR,7", Refused("arguments")),
+    (
+        "iso",
+        "CYCLE/DRILL,DEPTH,3,CLEAR,1\nCYCLE/ON,CLEAR,7\nGOTO/5,0,0\nCYCLE/OFF",
+        Read("Z -3.0\nrapid Z 7\n"),
+    ),
     ("creo", "CYCLE/BORE,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),
     ("creo", "CYCLE/TAP,DEPTH,3,MMPM,50,CLEAR,1", Refused("cycle")),
     ("catia", "CYCLE/DRILL, 3.0, 5.0", Refused("cycle-number")),
@@ -345,6 +357,7 @@ fn what_is_refused_is_told_once() {
                     !matches!(
                         d.id,
                         "word-left-out"
+                            | "cycle-open"
                             | "tool-arguments"
                             | "frame-changes"
                             | "moves-before-tool"

@@ -137,6 +137,7 @@ impl Terms {
                 let values = [
                     ("name", "CONE10"),
                     ("tool", "7"),
+                    ("register", "7"),
                     ("rpm", "3000"),
                     ("home", &self.home),
                     ("words", "A90"),
@@ -157,7 +158,7 @@ impl Terms {
 fn is_filled_in(template: &Template, line: &str) -> bool {
     template.matched(line).is_some_and(|values| {
         values.iter().all(|(variable, value)| match variable.as_str() {
-            "tool" => value.bytes().all(|b| b.is_ascii_digit()),
+            "tool" | "register" => value.bytes().all(|b| b.is_ascii_digit()),
             "label" | "i" | "number" => value.bytes().all(|b| b.is_ascii_digit()),
             "home" | "words" | "axis" => value.starts_with(|c: char| c.is_ascii_uppercase()),
             "first" | "second" | "third" => {

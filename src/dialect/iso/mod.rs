@@ -140,6 +140,9 @@ fn is_block(line: &str) -> bool {
 /// is written into the first block of Z.
 const OFFSET: &str = "G43 H{tool}";
 
+/// The same with a register that need not have the number of the tool.
+const FREE_OFFSET: &str = "G43 H{register}";
+
 /// A machine whose tool calls do not end with [`OFFSET`], and whether those lines did.
 struct Offset<'m> {
     machine: Cow<'m, Machine>,
@@ -147,11 +150,17 @@ struct Offset<'m> {
     tool: bool,
     /// In `tool_spindle`.
     tool_spindle: bool,
+    /// Whether the register may have another number than the tool.
+    free: bool,
 }
 
 impl<'m> Offset<'m> {
     fn new(machine: &'m Machine) -> Offset<'m> {
-        let ends = |lines: &[Template]| lines.last().is_some_and(|line| line.0 == OFFSET) && 1 < lines.len();
+        let ends = |lines: &[Template]| {
+            lines.last().is_some_and(|line| [OFFSET, FREE_OFFSET].contains(&line.0.as_str()))
+                && 1 < lines.len()
+        };
+        let free = machine.has_registers();
         let (tool, tool_spindle) = (ends(&machine.frame.tool), ends(&machine.frame.tool_spindle));
         let mut without = Cow::Borrowed(machine);
         if tool {
@@ -160,6 +169,6 @@ impl<'m> Offset<'m> {
         if tool_spindle {
             without.to_mut().frame.tool_spindle.pop();
         }
-        Offset { machine: without, tool, tool_spindle }
+        Offset { machine: without, tool, tool_spindle, free }
     }
 }

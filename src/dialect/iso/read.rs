@@ -101,12 +101,14 @@ struct Reader<'m> {
     /// Remarks within the spline in the making.
     remarks: Vec<(String, Span)>,
     z: Option<usize>,
-    /// The tool whose length offset is still to be called.
+    /// The register whose length is still to be called.
     offset_due: Option<u32>,
-    /// The tool whose length offset was called.
+    /// The register whose length was called.
     offset_tool: Option<u32>,
-    /// The tool whose length offset this section may call again, once.
+    /// The register whose length this section may call again, once.
     offset_again: Option<u32>,
+    /// Whether the register may have another number than the tool.
+    offset_free: bool,
     /// The work offset in force, G54 to G59, in tenths.
     work_offset: Option<i64>,
     warned_left_out: bool,
@@ -130,6 +132,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         offset_due: None,
         offset_tool: None,
         offset_again: None,
+        offset_free: false,
         work_offset: None,
         warned_left_out: false,
         plane: Plane::Xy,

@@ -84,7 +84,7 @@ impl Writer<'_> {
         for part in parts {
             match &part {
                 Part::Fixed(line) => self.line(line),
-                Part::Tool(tool, lines) => {
+                Part::Tool(call, lines) => {
                     let called = match lines {
                         ToolLines::WithSpindle => self.offset.tool_spindle,
                         ToolLines::Alone => self.offset.tool,
@@ -93,7 +93,7 @@ impl Writer<'_> {
                     self.leave_plane();
                     self.modal.forget();
                     self.plane = None;
-                    self.offset_tool = called.then_some(*tool);
+                    self.offset_tool = called.then_some(call.register());
                     self.offset_due = self.offset_tool;
                 }
                 Part::Spindle => {}
@@ -176,8 +176,8 @@ impl Writer<'_> {
         }
         if targets.iter().any(|(axis, _)| Some(*axis) == self.z) {
             let again = self.offset_again.take();
-            if let Some(tool) = self.offset_due.take().or(again) {
-                self.modal.text(&format!("G43 H{tool} "));
+            if let Some(h) = self.offset_due.take().or(again) {
+                self.modal.text(&format!("G43 H{h} "));
             }
         }
         self.modal.targets(targets);
@@ -186,7 +186,7 @@ impl Writer<'_> {
 
     /// Calls a length that is due: in the first line where that names Z, otherwise in a block of its own.
     fn offset_before(&mut self, curve: &Written) {
-        let Some(tool) = self.offset_due else { return };
+        let Some(h) = self.offset_due else { return };
         let names_z = |points: &WrittenPoints| {
             let mut ends = points.points();
             self.z.zip(ends.next()).is_some_and(|(z, end)| self.modal.position[z] != Some(end[z]))
@@ -197,7 +197,7 @@ impl Writer<'_> {
         };
         if !waits {
             self.offset_due = None;
-            self.line(&format!("G43 H{tool}"));
+            self.line(&format!("G43 H{h}"));
         }
     }
 
@@ -208,9 +208,9 @@ impl Writer<'_> {
             self.modal.begin("N");
             self.modal.motion("G1");
             if i == 0
-                && let Some(tool) = self.offset_due.take()
+                && let Some(h) = self.offset_due.take()
             {
-                self.modal.text(&format!("G43 H{tool} "));
+                self.modal.text(&format!("G43 H{h} "));
             }
             self.modal.inverse(rate.is_some());
             self.modal.moved_axes(point);

@@ -7,7 +7,8 @@
 use super::motion::Pending;
 use super::points::{Reading, Ring};
 use super::reader::{Reader, Said};
-use super::words::{Hand, Meaning};
+use super::statement::Placed;
+use super::words::{ByAxis, Hand, Meaning, Words};
 use crate::diagnostic::Diagnostic;
 use crate::geom::arc::{Arc, Frame, Sense};
 use crate::source::Span;
@@ -27,6 +28,9 @@ pub(super) const AXIS_SLACK: f64 = 1.0e-6;
 /// How far the end of a stated sweep may be from that of its arc, beside what both ends of it are off their circle, mm.
 const SWEEP_SLACK: f64 = 0.01;
 
+/// So many lines that contradict are more than those of one cusp.
+const FEW_VOTES: usize = 3;
+
 /// cos of the corner below which a line and an arc run into each other.
 const TANGENT: f64 = 0.99;
 
@@ -41,8 +45,10 @@ pub(super) struct Circle {
     pub(super) radius: Option<f64>,
     /// The sweep stated, radians, where it is.
     pub(super) sweep: Option<f64>,
-    /// Whether its sense follows from an axis, so that neighbours may vote on it.
-    pub(super) by_axis: bool,
+    /// The statement whose axis its sense follows from, so that neighbours may vote on it.
+    pub(super) by_axis: Option<ByAxis>,
+    /// Whole turns before its end is met for the last time, `TIMES`.
+    pub(super) turns: u32,
     /// The start tangent stated, where it is.
     pub(super) tangent: Option<[f64; 3]>,
     /// Whether it ends where it meets a line a second time.
@@ -55,6 +61,7 @@ pub(super) struct Circle {
 pub(super) struct Left {
     tangent: [f64; 2],
     frame: Frame,
+    by: ByAxis,
     at: [f64; 3],
     /// Its circle, where points behind it may be of the arc.
     pub(super) ring: Option<(Ring, Reading)>,
@@ -63,11 +70,18 @@ pub(super) struct Left {
 /// How many arcs go the way that their neighbours say, and how many do not.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Votes {
+    /// Of each statement.
+    senses: [Sides; 3],
+    /// Lines that end on the circle of the arc before them: how many, and the first.
+    pub(super) lines: Option<(usize, Span)>,
+}
+
+/// How many arcs of one statement go the way that their neighbours say, and how many do not.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sides {
     agree: usize,
     contradict: usize,
     first: Option<Span>,
-    /// Lines that end on the circle of the arc before them: how many, and the first.
-    pub(super) lines: Option<(usize, Span)>,
 }
 
 /// Whether a vector is a direction, which files write with length 1.
@@ -91,10 +105,16 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 impl Circle {
     /// Of `cx,cy,cz,i,j,k[,r]` in units of `scale` mm; none where the axis is no direction.
-    pub(super) fn from_numbers(numbers: &[f64], hand: Hand, scale: f64, span: Span) -> Option<Circle> {
+    pub(super) fn from_numbers(
+        numbers: &[f64],
+        by: ByAxis,
+        words: &Words,
+        scale: f64,
+        span: Span,
+    ) -> Option<Circle> {
         let &[cx, cy, cz, i, j, k, ref others @ ..] = numbers else { return None };
         let (frame, along) = frame_about([i, j, k])?;
-        let sense = match (along, hand) {
+        let sense = match (along, words.hand(by).0) {
             (true, Hand::Right) | (false, Hand::Left) => Sense::CounterClockwise,
             (true, Hand::Left) | (false, Hand::Right) => Sense::Clockwise,
         };
@@ -104,7 +124,8 @@ impl Circle {
             sense,
             radius: others.first().map(|r| r * scale),
             sweep: None,
-            by_axis: true,
+            by_axis: Some(by),
+            turns: 0,
             tangent: None,
             second: false,
             span,
@@ -114,8 +135,8 @@ impl Circle {
 
 impl Reader<'_> {
     /// The circle of a centre, an axis and perhaps a radius; none where the axis is no direction.
-    fn circle_of(&mut self, numbers: &[f64], hand: Hand, said: &Said<'_>) -> Option<Circle> {
-        let circle = Circle::from_numbers(numbers, hand, self.scale, said.span);
+    fn circle_of(&mut self, numbers: &[f64], by: ByAxis, said: &Said<'_>) -> Option<Circle> {
+        let circle = Circle::from_numbers(numbers, by, &self.words, self.scale, said.span);
         if circle.is_none() {
             let message = "the axis of this arc is no direction";
             self.refuse_arc(Diagnostic::error("arc-plane", message).at(said.span, ""));
@@ -167,6 +188,7 @@ impl Reader<'_> {
             | Meaning::Partno
             | Meaning::Insert
             | Meaning::Path
+            | Meaning::PathEnd
             | Meaning::Mode
             | Meaning::Stop
             | Meaning::Opstop
@@ -228,18 +250,18 @@ impl Reader<'_> {
         self.refuse_arc(diagnostic);
     }
 
-    /// `CIRCLE/cx,cy,cz,i,j,k[,r[,t,f,d,e]]`
+    /// `CIRCLE/cx,cy,cz,i,j,k[,r[,t,f,d,e]][,TIMES,n]`
     pub(super) fn circle(&mut self, said: &Said<'_>) {
         if self.arc_in_cycle(said.span) {
             return;
         }
-        let numbers = said.statement.numbers().unwrap_or_default();
-        if ![6, 7, 11].contains(&numbers.len()) {
-            let message = "CIRCLE has six numbers, seven with its radius, or eleven";
+        let Some((numbers, turns)) = numbered(said) else {
+            let message = "CIRCLE has six numbers, seven with its radius, or eleven, and perhaps TIMES with a whole number";
             return self.refuse_arc(Diagnostic::error("arc-numbers", message).at(said.span, ""));
-        }
-        if let Some(circle) = self.circle_of(&numbers, self.words.circle, said) {
-            self.wait(circle);
+        };
+        let by = by_count(&numbers);
+        if let Some(circle) = self.circle_of(&numbers, by, said) {
+            self.wait(Circle { turns, ..circle });
         }
     }
 
@@ -258,7 +280,7 @@ impl Reader<'_> {
             let message = "MOVARC has ANGLE and degrees greater than zero";
             return self.refuse_arc(Diagnostic::error("arc-numbers", message).at(said.span, ""));
         }
-        if let Some(circle) = self.circle_of(&[cx, cy, cz, nx, ny, nz, r], Hand::Right, said) {
+        if let Some(circle) = self.circle_of(&[cx, cy, cz, nx, ny, nz, r], ByAxis::Movarc, said) {
             let sweep = Some(degrees / crate::units::DEGREES);
             self.wait(Circle { sweep, ..circle });
         }
@@ -319,11 +341,17 @@ impl Reader<'_> {
         if !self.holds_tangent(circle, &arc, whole) {
             return None;
         }
-        if circle.by_axis {
-            self.entered(&arc, whole);
+        if let Some(by) = circle.by_axis {
+            self.entered(&arc, by, whole);
+        }
+        let round = chord < FULL_CHORD;
+        if circle.sweep.is_none() && !round && !self.goes_round(&arc, chord, whole) {
+            return None;
         }
         let turns = match circle.sweep {
-            None => 0.0,
+            // Over its start a tilted arc begins and ends in places that rounding keeps apart: once round it is one turn.
+            None if round && arc.sweep().abs() < std::f64::consts::PI => f64::from(circle.turns) + 1.0,
+            None => f64::from(circle.turns),
             Some(sweep) => {
                 let turns = ((sweep - arc.sweep().abs()) / (2.0 * std::f64::consts::PI)).round();
                 let rest = sweep - arc.sweep().abs() - turns * 2.0 * std::f64::consts::PI;
@@ -337,9 +365,36 @@ impl Reader<'_> {
         };
         arc = arc.with_turns(turns.max(0.0) as u32);
         self.program.arc(arc, feed, whole);
-        let left = Left { tangent: arc.tangent(1.0), frame: circle.frame, at: end, ring: None };
-        self.pending = circle.by_axis.then_some(Pending::Left(left));
+        self.pending = circle.by_axis.map(|by| {
+            let (tangent, frame) = (arc.tangent(1.0), circle.frame);
+            Pending::Left(Left { tangent, frame, by, at: end, ring: None })
+        });
         Some(())
+    }
+
+    /// Whether an arc is not almost a whole turn of a helix: where its end is over its start but for rounding, and its rise
+    /// is more, the file may mean a turn or a plunge.
+    fn goes_round(&mut self, arc: &Arc, chord: f64, span: Span) -> bool {
+        if std::f64::consts::PI < arc.sweep().abs() || MISFIT_REFUSED < chord {
+            return true;
+        }
+        if chord < arc.rise().abs() {
+            let message = format!(
+                "this arc ends {chord:.5} mm beside its start and {:.4} mm above or below it: whether that is a whole turn of a helix or a plunge it does not say",
+                arc.rise().abs()
+            );
+            self.push(
+                Diagnostic::refusal("arc-turn", message)
+                    .at(span, "")
+                    .hint("with its end over its start, to 0.00001 mm, an arc is a whole turn; a GOTO without a CIRCLE is a plunge"),
+            );
+            return false;
+        }
+        if chord < MISFIT_WARNED && MISFIT_REFUSED < arc.radius() {
+            let message = format!("this arc is {chord:.5} mm long, not a whole turn");
+            self.push(Diagnostic::warning("arc-turn", message).at(span, ""));
+        }
+        true
     }
 
     /// An arc in which the tool turns: how its direction goes along the arc no page says.
@@ -354,17 +409,17 @@ impl Reader<'_> {
     }
 
     /// A line before an arc votes on its sense.
-    fn entered(&mut self, arc: &Arc, span: Span) {
+    fn entered(&mut self, arc: &Arc, by: ByAxis, span: Span) {
         if let (Some(from), Some(at)) = (self.program.before, self.program.position) {
             let tangent = arc.tangent(0.0);
-            self.votes.count(arc.frame(), tangent, from, at, span);
+            self.votes.count((by, arc.frame()), tangent, from, at, span);
         }
     }
 
     /// A line after an arc votes on its sense.
     pub(super) fn left(&mut self, left: &Left, to: [f64; 3], at: Span) {
         let span = Span::new(self.source, 0..0);
-        self.votes.count(left.frame, left.tangent, left.at, to, span);
+        self.votes.count((left.by, left.frame), left.tangent, left.at, to, span);
         if let Some((ring, reading)) = left.ring.as_ref().filter(|_| !self.rapid) {
             self.passes_ring(ring, *reading, to, at);
         }
@@ -373,40 +428,89 @@ impl Reader<'_> {
     /// Whether the file contradicts the sense that its system has.
     pub(super) fn vote(&mut self) {
         self.lines_on_circles();
-        let Votes { agree, contradict, first, .. } = self.votes;
-        if agree < contradict && 3 <= contradict {
-            let message = format!(
-                "{contradict} of {} arcs go the other way round than the lines beside them",
-                agree + contradict
-            );
-            let other = match self.words.circle {
-                Hand::Right => "left-hand",
-                Hand::Left => "right-hand",
-            };
-            let mut diagnostic = Diagnostic::warning("arc-sense", message).hint(format!(
-                "`{}` reads CIRCLE otherwise than this file writes it; circle = \"{other}\" in a table for --words turns it",
-                self.system.name
-            ));
-            if let Some(span) = first {
-                diagnostic = diagnostic.at(span, "first here");
-            }
-            self.push(diagnostic);
+        for by in ByAxis::ALL {
+            self.sense(by);
         }
     }
+
+    /// The same of one statement: an error, unless the shop's own table says so.
+    fn sense(&mut self, by: ByAxis) {
+        let Sides { agree, contradict, first } = self.votes.senses[by as usize];
+        // One line beside an arc may be that of a cusp.
+        if contradict <= agree || contradict < 2 {
+            return;
+        }
+        let message = format!(
+            "arcs go the other way round than {contradict} of the {} lines that run into them",
+            agree + contradict
+        );
+        let (own, other) = match self.words.hand(by) {
+            (Hand::Right, _) => ("right-hand", "left-hand"),
+            (Hand::Left, _) => ("left-hand", "right-hand"),
+        };
+        let key = by.key();
+        let diagnostic = if self.words.hand(by).1 {
+            Diagnostic::warning("arc-sense", message)
+                .hint(format!("{key} = \"{own}\" in the table of --words says so"))
+        } else {
+            // A cusp has two lines beside it.
+            let severity = if contradict < FEW_VOTES { Diagnostic::warning } else { Diagnostic::error };
+            severity("arc-sense", message)
+                .hint(format!(
+                    "`{}` reads them otherwise than this file writes them; {key} = \"{other}\" in a table for --words turns them",
+                    self.system.name
+                ))
+                .hint(format!("{key} = \"{own}\" there says that they are right"))
+        };
+        self.push(match first {
+            Some(span) => diagnostic.at(span, "first here"),
+            None => diagnostic,
+        });
+    }
+}
+
+/// The numbers of a CIRCLE, and how many whole turns it makes before its end is met for the last time.
+fn numbered(said: &Said<'_>) -> Option<(Vec<f64>, u32)> {
+    let is_times =
+        |placed: &&Placed<'_>| placed.argument.word().is_some_and(|word| word.eq_ignore_ascii_case("TIMES"));
+    let arguments = said.arguments();
+    let count = arguments.iter().take_while(|placed| !is_times(placed)).count();
+    let numbers: Option<Vec<f64>> =
+        arguments[..count].iter().map(|placed| placed.argument.number()).collect();
+    let times = match &arguments[count..] {
+        [] => 1.0,
+        [_, times] => times.argument.number()?,
+        [..] => return None,
+    };
+    let fits = [6, 7, 11].contains(&count) && times.fract() == 0.0 && (1.0..1000.0).contains(&times);
+    fits.then_some((numbers?, times as u32 - 1))
+}
+
+/// Which statement a CIRCLE of so many numbers is.
+pub(super) fn by_count(numbers: &[f64]) -> ByAxis {
+    if numbers.len() == 11 { ByAxis::Eleven } else { ByAxis::Circle }
 }
 
 impl Votes {
     /// A line from `from` to `to` beside an arc with this tangent.
-    fn count(&mut self, frame: Frame, tangent: [f64; 2], from: [f64; 3], to: [f64; 3], span: Span) {
+    fn count(
+        &mut self,
+        (by, frame): (ByAxis, Frame),
+        tangent: [f64; 2],
+        from: [f64; 3],
+        to: [f64; 3],
+        span: Span,
+    ) {
+        let sides = &mut self.senses[by as usize];
         let [u, v, _] = frame.local(minus(to, from));
         let line = [u, v];
         let length = (line[0] * line[0] + line[1] * line[1]).sqrt();
         let cos = (line[0] * tangent[0] + line[1] * tangent[1]) / length;
         if TANGENT < cos {
-            self.agree += 1;
+            sides.agree += 1;
         } else if cos < -TANGENT {
-            self.contradict += 1;
-            self.first = self.first.or(Some(span).filter(|span| span.end != 0));
+            sides.contradict += 1;
+            sides.first = sides.first.or(Some(span).filter(|span| span.end != 0));
         }
     }
 }

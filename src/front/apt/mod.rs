@@ -23,7 +23,7 @@
 //! | `statement` | a statement is a major word and arguments |
 //! | `words` | what a word means, as data |
 //! | `reader` | what statements mean, one after the other: modes end here |
-//! | `technology`, `motion`, `arcs`, `points`, `tangents`, `cycles`, `splines`, `directions`, `remarks` | its parts |
+//! | `technology`, `tools`, `motion`, `arcs`, `points`, `tangents`, `cycles`, `splines`, `directions`, `remarks` | its parts |
 //! | `systems` | one file a CAM system: how it is recognised, and what it does differently |
 //! | `program` | moves become the steps of a program |
 //! | `running` | whether a tool, the spindle and the coolant are there where something is cut |
@@ -46,6 +46,7 @@ mod statement;
 mod systems;
 mod tangents;
 mod technology;
+mod tools;
 mod words;
 
 pub use words::KEYS;
@@ -103,6 +104,9 @@ pub fn parse_as(sources: &Sources, system: Option<&str>) -> Result<Intent, Diagn
         words.add(&table.text, id)?;
     }
     let mut reader = reader::Reader::new(SourceId::INPUT, system, words, sources.lenient);
+    if let Some(unit) = sources.units {
+        (reader.scale, reader.unit_told) = (unit, true);
+    }
     if input.encoding == Encoding::Windows1252 {
         let at = text.find(|c: char| !c.is_ascii()).unwrap_or(0);
         let width = text[at..].chars().next().map_or(0, char::len_utf8);

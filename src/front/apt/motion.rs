@@ -36,6 +36,7 @@ impl Reader<'_> {
     /// A point in mm, where its coordinates are numbers that a machine may have.
     fn point(&mut self, numbers: &[f64], span: Span) -> Option<[f64; 3]> {
         let point = [numbers[0] * self.scale, numbers[1] * self.scale, numbers[2] * self.scale];
+        self.unit_taken |= !self.units_stated;
         if point.iter().all(|x| x.abs() < 1.0e9) {
             return Some(point);
         }
@@ -63,8 +64,11 @@ impl Reader<'_> {
             return self.lose(numbers);
         }
         let Some(point) = self.point(numbers, span) else { return self.lose(&[]) };
-        if self.cycle.is_some() {
-            return self.hole(point, span);
+        if self.dirty_tool {
+            self.meets_tool(span);
+        }
+        if self.cycle.is_some() && self.hole(point, span) {
+            return;
         }
         if self.pending.is_some() && self.met(point, span) {
             return;
@@ -227,6 +231,7 @@ impl Reader<'_> {
             _ => return self.error("arguments", "GOHOME takes three numbers or none", said.span),
         };
         self.rapid = false;
+        self.end_cycle("GOHOME", said.span);
         match point {
             Some(point) => self.program.rapid(&point, said.span),
             None => self.error(

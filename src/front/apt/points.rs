@@ -189,7 +189,10 @@ impl Reader<'_> {
 
     /// The first point behind a circle.
     pub(super) fn circle_meets(&mut self, circle: Circle, point: [f64; 3], span: Span) {
-        let start = self.program.position.filter(|_| circle.sweep.is_none() && circle.by_axis);
+        let start = self
+            .program
+            .position
+            .filter(|_| circle.sweep.is_none() && circle.by_axis.is_some() && circle.turns == 0);
         let mut ring = start.map(|start| Ring::new(&circle, start));
         let step = ring.as_ref().and_then(|ring| ring.step(point));
         let (Some(mut ring), Some(step)) = (ring.take(), step) else {
@@ -368,12 +371,12 @@ pub(super) struct Survey {
 
 impl Survey {
     /// Looks at all circles of a text, where its system may write points before their end.
-    pub(super) fn of(text: &str, words: &Words) -> Survey {
+    pub(super) fn of(text: &str, words: &Words, scale: f64) -> Survey {
         let mut survey = Survey { operations: vec![(0, false)] };
         if words.points != ArcPoints::Likely {
             return survey;
         }
-        let (mut scale, mut position, mut ring) = (1.0, None, None::<Ring>);
+        let (mut scale, mut position, mut ring) = (scale, None, None::<Ring>);
         for record in Records::new(text) {
             let numbers = match record.kind {
                 Kind::Code => statement::goto(&record.text),
@@ -418,8 +421,9 @@ impl Survey {
                 Some(Meaning::Circle) => {
                     let numbers = said.numbers().unwrap_or_default();
                     let span = Span::new(crate::source::SourceId::INPUT, record.range.clone());
-                    ring = Circle::from_numbers(&numbers, words.circle, scale, span)
-                        .and_then(|circle| Some(Ring::new(&circle, position?)));
+                    ring =
+                        Circle::from_numbers(&numbers, super::arcs::by_count(&numbers), words, scale, span)
+                            .and_then(|circle| Some(Ring::new(&circle, position?)));
                 }
                 Some(
                     Meaning::From

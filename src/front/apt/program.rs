@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::arc::Arc;
 use crate::geom::deviation::Bound;
 use crate::geom::nurbs::Nurbs;
-use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step, map_along};
+use crate::ir::{Auxiliary, Curve, Cut, Intent, Located, Polyline, Program, Role, Step, ToolCall, map_along};
 use crate::source::Span;
 use crate::units::{Axes, Position};
 
@@ -26,6 +26,8 @@ pub(super) struct Builder {
     pub(super) position: Option<[f64; AXES]>,
     /// Which axes a rapid need not name, since nothing made a control forget them.
     told: bool,
+    /// Whether this tool has moved since it was called, in the frame that holds.
+    moved: bool,
     /// Where the tool was before that.
     pub(super) before: Option<[f64; AXES]>,
     /// The direction of the tool, of length 1.
@@ -58,6 +60,7 @@ impl Builder {
             run: None,
             position: None,
             told: false,
+            moved: false,
             before: None,
             axis: UPRIGHT,
             stood: UPRIGHT,
@@ -146,14 +149,14 @@ impl Builder {
     }
 
     /// Calls a tool.
-    pub(super) fn tool(&mut self, number: u32, span: Span) {
+    pub(super) fn tool(&mut self, call: ToolCall, span: Span) {
         // CAM systems leave it to the post to bring the tool away before it is changed.
         if self.stop().is_none() {
             self.step(Step::Home(Z), span);
         }
-        self.step(Step::Tool(number), span);
-        self.running.tool(number);
-        self.told = false;
+        self.step(Step::Tool(call), span);
+        self.running.tool(call);
+        (self.told, self.moved) = (false, false);
     }
 
     /// Starts the spindle, clockwise, rev/min.
@@ -197,12 +200,30 @@ impl Builder {
             // A direction is never modal.
             targets.extend(directed(&self.axis));
         }
+        if let Some(up) = self.begins(to) {
+            let (first, last) = targets.into_iter().partition(|(axis, _)| (*axis == Z) == up);
+            self.step(Step::Rapid(first), span);
+            targets = last;
+        }
         self.step(Step::Rapid(targets), span);
         self.running.rapid(span);
         self.before = self.position;
         self.position = Some(*to);
-        self.told = true;
+        (self.told, self.moved) = (true, true);
         self.stood = self.axis;
+    }
+
+    /// Whether Z goes first in the first rapid of a file without a tool: nobody knows where the tool is, so it goes over the
+    /// work first and then down. Where FROM says that it is lower, first up.
+    fn begins(&self, to: &[f64; AXES]) -> Option<bool> {
+        let begins = !self.has_moved() && self.running.has_no_tool() && !self.five;
+        begins.then(|| self.position.is_some_and(|from| from[Z] < to[Z]))
+    }
+
+    /// The height of the tool along its axis and that axis, where it has moved since it was called.
+    pub(super) fn height(&self) -> Option<(f64, [f64; 3])> {
+        let place = self.position.filter(|_| self.moved)?;
+        Some(((0..AXES).map(|i| place[i] * self.stood[i]).sum(), self.stood))
     }
 
     /// Goes to a point in a straight line, mm/min.
@@ -229,7 +250,7 @@ impl Builder {
         whole.end = span.end;
         self.before = self.position;
         self.position = Some(*to);
-        self.told = true;
+        (self.told, self.moved) = (true, true);
         self.stood = self.axis;
     }
 
@@ -241,7 +262,7 @@ impl Builder {
         let cut = Cut { feed: Some(feed), role: Role::AsAsked, curve: Curve::Arc(arc) };
         self.step(Step::Cut(cut), span);
         self.position = Some([end[0], end[1], end[2]]);
-        self.told = true;
+        (self.told, self.moved) = (true, true);
         self.stood = self.axis;
     }
 
@@ -257,7 +278,7 @@ impl Builder {
             let length = (x * x + y * y + z * z).sqrt();
             self.axis = [x / length, y / length, z / length];
         }
-        self.told = true;
+        (self.told, self.moved) = (true, true);
         self.stood = self.axis;
     }
 
@@ -266,7 +287,7 @@ impl Builder {
     pub(super) fn reframed(&mut self, span: Span) {
         self.stop_due = Some(span);
         self.running.reframed();
-        self.told = false;
+        (self.told, self.moved) = (false, false);
         (self.position, self.before) = (None, None);
     }
 

@@ -1,6 +1,6 @@
 //! What statements mean, one after the other. All modes of the language end here.
 
-use super::cycles::Cycle;
+use super::cycles::{Cycle, Kind as CycleKind, Stated};
 use super::motion::Pending;
 use super::points::Survey;
 use super::program::Builder;
@@ -10,9 +10,10 @@ use super::splines::Spline;
 use super::statement::{self, Argument, Placed, Statement};
 use super::systems::System;
 use super::technology::Feed;
+use super::tools::Known;
 use super::words::{Meaning, Words};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::ir::{Auxiliary, Intent};
+use crate::ir::{Auxiliary, Intent, ToolCall};
 use crate::source::{SourceId, Span};
 use std::collections::BTreeMap;
 
@@ -47,11 +48,23 @@ pub(super) struct Reader<'s> {
     pub(super) scale: f64,
     /// Whether UNITS was read.
     pub(super) units_stated: bool,
+    /// Whether --units states the unit.
+    pub(super) unit_told: bool,
+    /// Whether a number was taken in the unit of the file before that was stated.
+    pub(super) unit_taken: bool,
+    /// The first feed in inches, and the first in millimetres.
+    pub(super) unit_signs: [Option<Span>; 2],
+    /// Tools by their numbers: the name and the diameter that each had where it first moved.
+    pub(super) known_tools: BTreeMap<u32, Known>,
+    /// The tool that TOOL PATH names, in capitals.
+    pub(super) path_tool: Option<String>,
+    /// Whether the tool, its name or its diameter was stated since the last move.
+    pub(super) dirty_tool: bool,
     /// Whether the next motion is a rapid.
     pub(super) rapid: bool,
     pub(super) feed: Option<Feed>,
     pub(super) rpm: Option<f64>,
-    pub(super) tool: Option<u32>,
+    pub(super) tool: Option<ToolCall>,
     /// The cutter's diameter, mm.
     pub(super) diameter: Option<f64>,
     /// Where the tool was when the file began, for GOHOME.
@@ -59,8 +72,10 @@ pub(super) struct Reader<'s> {
     /// A circle that waits for its end, or a tangent that waits for its arc.
     pub(super) pending: Option<Pending>,
     pub(super) cycle: Option<Cycle>,
-    /// The cycle that CYCLE/ON takes up again.
-    pub(super) last_cycle: Option<Cycle>,
+    /// The cycle that CYCLE/ON takes up again, as it was stated.
+    pub(super) last_cycle: Option<(CycleKind, Stated)>,
+    /// The height that the tool had before the cycle, along which axis.
+    pub(super) initial: Option<(f64, [f64; 3])>,
     pub(super) spline: Option<Spline>,
     /// Whether a tilt of the tool may not hold any more: MULTAX/OFF, or another tool.
     pub(super) axis_stale: bool,
@@ -70,7 +85,8 @@ pub(super) struct Reader<'s> {
     pub(super) spline_end: Option<([f64; 3], [f64; 3])>,
     /// The greatest angle at which splines meet, degrees, and the spline behind it.
     pub(super) joint: Option<(f64, Span)>,
-    pub(super) frame: Option<String>,
+    /// The frames in force, by the words that state them.
+    pub(super) frames: BTreeMap<String, String>,
     pub(super) matrix: Option<Matrix>,
     /// How many arcs agree with the sense that their system has, and how many do not, by their neighbours' tangents.
     pub(super) votes: super::arcs::Votes,
@@ -128,6 +144,22 @@ impl<'r> Said<'r> {
     }
 }
 
+/// The words of APT that make geometry.
+const GEOMETRY: &[&str] = &[
+    "POINT", "LINE", "CIRCLE", "PLANE", "VECTOR", "CYLNDR", "ELLIPS", "HYPERB", "PARAB", "CONE", "SPHERE",
+    "MATRIX", "PATERN", "TABCYL", "LCONIC", "GCONIC", "QADRIC", "RLDSRF", "POLCON", "SCURV", "SSURF",
+];
+
+/// Whether a statement names geometry, `P1=POINT/0,0,0`, as part programs do and CL data never does.
+fn is_part_program(text: &str) -> bool {
+    let Some((name, rest)) = text.split_once('=') else { return false };
+    let word = rest.split('/').next().unwrap_or_default().trim();
+    let name = name.trim();
+    !name.is_empty()
+        && name.bytes().all(|b| b.is_ascii_alphanumeric())
+        && GEOMETRY.iter().any(|known| word.eq_ignore_ascii_case(known))
+}
+
 impl<'s> Reader<'s> {
     /// At the beginning.
     pub(super) fn new(source: SourceId, system: &'s System, words: Words, lenient: bool) -> Reader<'s> {
@@ -146,6 +178,12 @@ impl<'s> Reader<'s> {
             warnings: 0,
             scale: 1.0,
             units_stated: false,
+            unit_told: false,
+            unit_taken: false,
+            unit_signs: [None; 2],
+            known_tools: BTreeMap::new(),
+            path_tool: None,
+            dirty_tool: false,
             rapid: false,
             feed: None,
             rpm: None,
@@ -155,12 +193,13 @@ impl<'s> Reader<'s> {
             pending: None,
             cycle: None,
             last_cycle: None,
+            initial: None,
             spline: None,
             axis_stale: false,
             second_point: None,
             spline_end: None,
             joint: None,
-            frame: None,
+            frames: BTreeMap::new(),
             matrix: None,
             votes: super::arcs::Votes::default(),
             survey: Survey::default(),
@@ -169,7 +208,7 @@ impl<'s> Reader<'s> {
 
     /// Reads a text.
     pub(super) fn read(mut self, text: &str) -> Result<Intent, Diagnostics> {
-        self.survey = Survey::of(text, &self.words);
+        self.survey = Survey::of(text, &self.words, self.scale);
         let goto = self.words.meaning("GOTO") == Some(Meaning::Goto);
         let mut records = Records::new(text);
         while self.errors < MAX_ERRORS && !self.hopeless {
@@ -202,6 +241,11 @@ impl<'s> Reader<'s> {
     fn end(mut self, text: &str) -> Result<Intent, Diagnostics> {
         self.end_spline();
         self.end_pending();
+        let last = Span::new(self.source, text.len()..text.len());
+        self.end_cycle("the end of the file", last);
+        if !self.hopeless {
+            self.unit_is_known();
+        }
         self.vote();
         self.joints();
         for (word, (count, span)) in std::mem::take(&mut self.left_out) {
@@ -291,6 +335,16 @@ impl<'s> Reader<'s> {
         if super::records::is_free_text(&record.text) {
             return self.free_text(record, span);
         }
+        if is_part_program(&record.text) {
+            self.hopeless = true;
+            // What stood before it follows from that.
+            self.diagnostics = Diagnostics::new();
+            return self.push(
+                Diagnostic::refusal("apt-part-program", "this is an APT part program, not CL data")
+                    .at(span, "geometry is named here; CL data has places alone")
+                    .hint("an APT processor makes CL data of it"),
+            );
+        }
         let statement = match statement::parse(&record.text) {
             Ok(statement) => statement,
             Err(_) if self.listed_point(&record.text, span) => return,
@@ -345,8 +399,10 @@ impl<'s> Reader<'s> {
                 self.carry(&format!("PARTNO {rest}"), span);
             }
             Some(Meaning::Path) => {
+                self.end_operation("TOOL PATH", span);
                 self.name(rest.split(',').next().unwrap_or_default(), span);
                 self.carry(&format!("TOOL PATH {rest}"), span);
+                self.path(rest, span);
             }
             Some(Meaning::Comment) => self.carry(rest, span),
             Some(Meaning::LeftOut) => self.leave_out(word, span),
@@ -391,6 +447,9 @@ impl<'s> Reader<'s> {
     fn statement(&mut self, meaning: Meaning, said: &Said<'_>) {
         let word = said.statement.major;
         self.between(meaning, said.span);
+        if self.dirty_tool && meaning.cuts_or_goes() {
+            self.meets_tool(said.span);
+        }
         match meaning {
             Meaning::Comment => {
                 let text = said.record.text.replace('/', " ");
@@ -410,7 +469,14 @@ impl<'s> Reader<'s> {
             }
             // These are free text; as other words they are too.
             Meaning::Partno | Meaning::Insert | Meaning::Path => self.free_text(said.record, said.span),
-            Meaning::End => self.ended = true,
+            Meaning::PathEnd => {
+                self.end_operation(&word.to_ascii_uppercase(), said.span);
+                self.leave_out(word, said.span);
+            }
+            Meaning::End => {
+                self.end_cycle(&word.to_ascii_uppercase(), said.span);
+                self.ended = true;
+            }
             Meaning::Units => self.units(said),
             Meaning::Mode => self.mode(said),
             Meaning::Stop if said.is_bare() => self.program.auxiliary(Auxiliary::Stop, said.span),

@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use super::statement::number;
+use super::words::Meaning;
 use crate::diagnostic::Diagnostic;
 use crate::machine::remark::ACCENTS;
 use crate::source::Span;
@@ -72,11 +73,20 @@ impl Reader<'_> {
             if word.trim().eq_ignore_ascii_case("CSYS") {
                 return self.frame("CSYS", values, span);
             }
-            if word.trim().eq_ignore_ascii_case("CUTTER") {
+            if word.trim().eq_ignore_ascii_case("CUTTER")
+                && self.words.meaning("CUTTER") == Some(Meaning::Cutter)
+            {
                 self.diameter = number(values.trim()).ok().map(|(_, d)| d * self.scale);
+                self.dirty_tool = true;
+            }
+            if word.trim().eq_ignore_ascii_case("FEATNO") {
+                self.end_operation("FEATNO", span);
             }
             let text = format!("{} {}", word.trim(), values.trim());
             return self.carry(&text, span);
+        }
+        if text.to_ascii_uppercase().starts_with("OPERATION NAME") {
+            self.end_operation("another operation", span);
         }
         self.carry(text, span);
     }
@@ -102,12 +112,19 @@ impl Reader<'_> {
             .map(|part| part.split_ascii_whitespace().map(short).collect::<Vec<_>>().join(" "))
             .collect();
         let text = plain(&format!("FRAME {word} {}", values.join(" ")));
-        if self.frame.as_deref() == Some(text.as_str()) {
+        // Files state TRNTYP and CSYS in turn before each operation: each is compared with itself.
+        if self.frames.get(word) == Some(&text) {
             return;
         }
         self.break_off(span);
         self.program.comment(&text, span);
-        self.frame = Some(text);
+        let first = self.frames.insert(word.to_owned(), text).is_none();
+        // Under TRNTYP/WORLD positions stay in the frame of the work, whatever CSYS says of the operation.
+        let world = self.frames.get("TRNTYP").is_some_and(|text| text.starts_with("FRAME TRNTYP WORLD"));
+        if word == "CSYS" && world && !first {
+            return;
+        }
+        self.initial = None;
         if self.program.has_moved() {
             if self.tool.is_none() {
                 let message = "the frame changes here, and no tool was called that could be brought away before the program stops";

@@ -5,7 +5,7 @@
 //! it; `pass::place` stops it for the change.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ir::{Curve, Step};
+use crate::ir::{Curve, Step, ToolCall};
 use crate::source::Span;
 
 /// What became of the spindle.
@@ -42,7 +42,7 @@ enum New {
 /// What runs, and what is to be said of it.
 #[derive(Debug, Default)]
 pub(super) struct Running {
-    tool: Option<u32>,
+    tool: Option<ToolCall>,
     spindle: Spindle,
     coolant: Coolant,
     /// Whether it was told that the spindle stands.
@@ -67,8 +67,8 @@ impl Running {
     }
 
     /// A tool is called.
-    pub(super) fn tool(&mut self, number: u32) {
-        self.tool = Some(number);
+    pub(super) fn tool(&mut self, call: ToolCall) {
+        self.tool = Some(call);
         self.new = Some(New::Tool);
         self.spindle(Spindle::Called);
     }
@@ -81,6 +81,11 @@ impl Running {
         };
         let coolant = (self.coolant == Coolant::Flows).then_some(Step::Coolant);
         self.tool.map(Step::Tool).into_iter().chain(spindle).chain(coolant).collect()
+    }
+
+    /// Whether no tool was called.
+    pub(super) fn has_no_tool(&self) -> bool {
+        self.tool.is_none()
     }
 
     /// Positions count in another frame from here on.
@@ -111,7 +116,7 @@ impl Running {
     pub(super) fn cuts(&mut self, span: Span) {
         self.begins(span);
         let new = self.new.take();
-        if self.tool == Some(0) {
+        if self.tool.is_some_and(|call| call.number == 0) {
             self.tool = None;
             let message = "tool 0 is an empty spindle, and cuts here";
             self.diagnostics.push(Diagnostic::error("tool-zero", message).at(span, ""));
@@ -120,7 +125,7 @@ impl Running {
                 first_cut(new, self.tool).at(span, "").hint("RAPID before it, to a place above the work"),
             );
         }
-        let tool = self.tool.map_or(String::new(), |tool| format!("tool {tool} cuts here, and "));
+        let tool = self.tool.map_or(String::new(), |call| format!("tool {} cuts here, and ", call.number));
         let message = match self.spindle {
             Spindle::Turns(_) => None,
             Spindle::Unsaid => Some(format!("{tool}nothing started the spindle before")),
@@ -139,10 +144,10 @@ impl Running {
 }
 
 /// What is said of a first move that cuts.
-fn first_cut(new: New, tool: Option<u32>) -> Diagnostic {
+fn first_cut(new: New, tool: Option<ToolCall>) -> Diagnostic {
     match new {
         New::Tool => {
-            let tool = tool.unwrap_or_default();
+            let tool = tool.map_or(0, |call| call.number);
             let message = format!(
                 "tool {tool} begins with a cut: from its home it goes over where that starts, and down at its feed"
             );

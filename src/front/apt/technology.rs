@@ -1,9 +1,10 @@
 //! Units, tools, spindle, feed, coolant, dwell and stops.
 
 use super::reader::{INCH, Reader, Said};
-use super::statement::Argument;
+use super::statement::{Argument, Placed};
+use super::words::Register;
 use crate::diagnostic::Diagnostic;
-use crate::ir::Auxiliary;
+use crate::ir::{Auxiliary, ToolCall};
 use crate::source::Span;
 
 /// A foot a minute, in mm/min.
@@ -48,6 +49,11 @@ pub(super) fn unit_scale(word: &str) -> Option<f64> {
     }
 }
 
+/// A whole number that a tool or a register may have.
+fn whole(number: Option<f64>) -> Option<u32> {
+    number.filter(|n| n.fract() == 0.0 && (0.0..4.0e9).contains(n)).map(|n| n as u32)
+}
+
 impl Reader<'_> {
     /// `UNITS/MM|INCHES|CM|FEET`
     pub(super) fn units(&mut self, said: &Said<'_>) {
@@ -57,14 +63,19 @@ impl Reader<'_> {
         };
         match unit_scale(word) {
             Some(scale) => {
+                if self.unit_told && !self.units_stated && scale != self.scale {
+                    let message = "the file states another unit than --units";
+                    return self.error("units-differ", message, said.span);
+                }
                 if self.units_stated && scale != self.scale {
                     let message =
                         "the unit changes within the file; positions from here on are in the new one";
                     self.push(Diagnostic::warning("units-change", message).at(said.span, ""));
-                } else if !self.units_stated && scale != 1.0 && self.program.has_moved() {
-                    let message = "the unit is stated after the first move, which was read in mm";
+                } else if !self.units_stated && scale != self.scale && self.unit_taken {
+                    let message = "the unit is stated behind places or feeds that were read in mm";
                     return self.error("units-late", message, said.span);
                 }
+                self.diameter = self.diameter.map(|d| d / self.scale * scale);
                 self.scale = scale;
                 self.units_stated = true;
             }
@@ -72,6 +83,24 @@ impl Reader<'_> {
                 self.error("units", format!("`{}` is no unit", said.record.text), said.span);
             }
         }
+    }
+
+    /// A file that states no unit is in millimetres where its feeds are, and nobody knows what it is in where they are in inches.
+    pub(super) fn unit_is_known(&mut self) {
+        if self.units_stated || self.unit_told {
+            return;
+        }
+        let hint = "--units inches or --units mm says what its places are in";
+        let diagnostic = match self.unit_signs {
+            [Some(span), _] => {
+                let message =
+                    "the file states no unit, and feeds in inches: its places may be in inches or in mm";
+                Diagnostic::refusal("units-missing", message).at(span, "")
+            }
+            [None, Some(_)] => return,
+            [None, None] => Diagnostic::warning("units-missing", "the file states no unit: it is read in mm"),
+        };
+        self.push(diagnostic.hint(hint));
     }
 
     /// `MODE/MILL|TURN`
@@ -98,6 +127,7 @@ impl Reader<'_> {
     /// `CUTTER/d,r,e,f,a,b,h`
     pub(super) fn cutter(&mut self, said: &Said<'_>) {
         self.diameter = said.first_number().map(|d| d * self.scale);
+        self.dirty_tool = true;
         let text = said.record.text.replace('/', " ");
         self.carry(&text, said.span);
     }
@@ -123,18 +153,24 @@ impl Reader<'_> {
         if said.has("TURN") {
             return self.turned(said.span);
         }
+        if said.has("ADJUST") || said.has("OSETNO") {
+            let message =
+                "the register of the tool's length stands in TOOLNO: only that of a tool call is compiled";
+            return self.push(Diagnostic::refusal("tool-register", message).at(said.span, "").hint(
+                "state it in LOADTL or LOAD/TOOL; TOOLNO = \"comment\" in a table for --words leaves it out",
+            ));
+        }
         let text = said.record.text.replace('/', " ");
         self.carry(&text, said.span);
     }
 
     /// A tool's number.
     fn tool_number(&mut self, said: &Said<'_>) -> Option<u32> {
-        let number = said.first_number();
-        let whole = number.filter(|n| n.fract() == 0.0 && (0.0..4.0e9).contains(n)).map(|n| n as u32);
-        if whole.is_none() {
+        let number = whole(said.first_number());
+        if number.is_none() {
             self.error("tool-number", "a tool is called by its number", said.span);
         }
-        whole
+        number
     }
 
     /// `LOADTL/n[,…]`
@@ -159,9 +195,45 @@ impl Reader<'_> {
         }
     }
 
-    /// Calls a tool, of whose statement so many arguments are read.
+    /// `ADJUST,m` or `OSETNO,m` of a tool call: the register that the length of the tool is taken from. None where it is wrong.
+    fn register(&mut self, call: ToolCall, said: &Said<'_>) -> Option<ToolCall> {
+        let is_word = |placed: &Placed<'_>| {
+            let word = placed.argument.word().unwrap_or_default();
+            word.eq_ignore_ascii_case("ADJUST") || word.eq_ignore_ascii_case("OSETNO")
+        };
+        let mut stated = said.arguments().iter().skip_while(|placed| !is_word(placed));
+        let Some(word) = stated.next() else { return Some(call) };
+        let register = stated.next().and_then(|placed| whole(placed.argument.number()));
+        if stated.any(is_word) {
+            self.error("tool-register", "the register of the tool's length is stated twice", said.span);
+            return None;
+        }
+        match register {
+            _ if self.words.register == Register::LeftOut => {
+                self.leave_out("ADJUST", said.span);
+                Some(call)
+            }
+            Some(register) if 0 < register => Some(call.with_register(register)),
+            Some(_) | None => {
+                let message =
+                    "ADJUST or OSETNO states the register of the tool's length, a whole number above zero";
+                self.push(Diagnostic::error("tool-register", message).at(said.place(word), "").hint(
+                    "tool_register = \"left-out\" in a table for --words takes the tool's own length instead",
+                ));
+                None
+            }
+        }
+    }
+
+    /// Calls a tool, of whose statement so many arguments are read, and the register of its length.
     fn call(&mut self, number: u32, said: &Said<'_>, read: usize) {
-        if read < said.arguments().len() {
+        let Some(call) = self.register(ToolCall::own(number), said) else { return };
+        self.end_operation(&said.statement.major.to_ascii_uppercase(), said.span);
+        if self.contradicts_table(call, said) {
+            return;
+        }
+        let own = said.has("ADJUST") || said.has("OSETNO");
+        if read + if own { 2 } else { 0 } < said.arguments().len() {
             let message = format!("of {} the tool's number is read", said.record.text);
             self.push(
                 Diagnostic::warning("tool-arguments", message)
@@ -169,22 +241,27 @@ impl Reader<'_> {
                     .hint("offsets and lengths are those of the tool on the control"),
             );
         }
-        if self.tool == Some(number) {
-            let message = format!("tool {number} is called again; it is called once in the program");
+        if self.tool == Some(call) {
+            let message = format!("{call} is called again; it is called once in the program");
             self.push(Diagnostic::warning("tool-repeated", message).at(said.span, ""));
             return;
         }
+        self.change(call, said.span);
+    }
+
+    /// Another tool comes into the spindle.
+    pub(super) fn change(&mut self, call: ToolCall, span: Span) {
         if self.tool.is_none() && self.program.has_moved() {
             let message = "the file moves before it calls its first tool: no length of that tool holds there";
             self.push(
                 Diagnostic::warning("moves-before-tool", message)
-                    .at(said.span, "first called here")
+                    .at(span, "first called here")
                     .hint("see that those moves are clear for whatever tool the spindle holds"),
             );
         }
-        self.tool = Some(number);
-        self.program.tool(number, said.span);
-        self.axis_stale = true;
+        self.tool = Some(call);
+        self.program.tool(call, span);
+        (self.axis_stale, self.dirty_tool) = (true, true);
     }
 
     /// `SPINDL/ { n | RPM|SFM|SMM | CLW|CCLW | MAXRPM,n | RANGE,n } | ON | OFF | ORIENT | MAIN`
@@ -208,7 +285,11 @@ impl Reader<'_> {
                     }
                     "CCLW" => {
                         let message = "CCLW: a spindle that turns counter-clockwise is not compiled";
-                        return self.refuse("spindle-reverse", message, said.place(placed));
+                        return self.push(
+                            Diagnostic::refusal("spindle-reverse", message)
+                                .at(said.place(placed), "")
+                                .hint("state CLW in the CAM system, and put the machine's own word for it into the program that comes out"),
+                        );
                     }
                     "OFF" => return self.program.auxiliary(Auxiliary::SpindleStop, said.span),
                     "ORIENT" => {
@@ -216,7 +297,26 @@ impl Reader<'_> {
                         return self.refuse("spindle-orient", message, said.place(placed));
                     }
                     "MAXRPM" | "RANGE" => {
-                        arguments.next();
+                        let value = arguments.next().map(|placed| &placed.argument);
+                        let stated = match value {
+                            Some(Argument::Number(_)) => true,
+                            Some(Argument::Word(range)) => ["LOW", "MEDIUM", "HIGH"]
+                                .iter()
+                                .any(|known| range.eq_ignore_ascii_case(known)),
+                            Some(_) | None => false,
+                        };
+                        if !stated {
+                            let message = format!("{word} of SPINDL has no value");
+                            return self.error("arguments", message, said.place(placed));
+                        }
+                        if word.eq_ignore_ascii_case("RANGE") && !self.words.range_left_out {
+                            let message = "RANGE: a gear of the spindle is not compiled";
+                            return self.push(
+                                Diagnostic::refusal("spindle-range", message)
+                                    .at(said.place(placed), "")
+                                    .hint("spindle_range = \"left-out\" in a table for --words takes it out, where the machine finds its gear by the speed"),
+                            );
+                        }
                         self.leave_out(&format!("SPINDL {word}"), said.span);
                     }
                     _ => {
@@ -259,8 +359,11 @@ impl Reader<'_> {
                         Some(_) if unit.is_some() => {
                             return self.error("arguments", "FEDRAT states two units", said.place(placed));
                         }
-                        Some(known) => unit = Some(known),
-                        None if word == "INVERS" && said.has("OFF") => return,
+                        Some(known) => {
+                            self.sign(&word, said.place(placed));
+                            unit = Some(known);
+                        }
+                        None if said.has("INVERS") && (word == "OFF" || said.has("OFF")) => {}
                         None if word == "INVERS" => {
                             let message = "INVERS: inverse-time feed is not compiled";
                             return self.refuse("feed-inverse", message, said.place(placed));
@@ -281,6 +384,10 @@ impl Reader<'_> {
             }
         }
         let Some(value) = value else {
+            if said.has("INVERS") && unit.is_none() {
+                // It ends what nothing began.
+                return;
+            }
             return self.error("feed-missing", "FEDRAT states no feed", said.span);
         };
         if unit.is_none() && matches!(self.feed, Some(Feed::PerRevolution(_))) {
@@ -294,6 +401,16 @@ impl Reader<'_> {
         self.feed = self.feed_of(value, unit, said.span).or(self.feed);
     }
 
+    /// A feed in inches or in millimetres shows what the file is in.
+    fn sign(&mut self, word: &str, span: Span) {
+        let sign = match word {
+            "IPM" | "IPR" | "FPM" | "FPR" => 0,
+            "MMPM" | "MMPR" => 1,
+            _ => return,
+        };
+        self.unit_signs[sign] = self.unit_signs[sign].or(Some(span));
+    }
+
     /// A feed in a unit, or in units of the file a minute.
     fn feed_of(&mut self, value: f64, unit: Option<FeedUnit>, span: Span) -> Option<Feed> {
         if !(0.0 < value && value.is_finite()) {
@@ -301,12 +418,14 @@ impl Reader<'_> {
             return None;
         }
         let (make, mm) = unit.unwrap_or((Feed::PerMinute, f64::NAN));
+        self.unit_taken |= mm.is_nan() && !self.units_stated;
         Some(make(value * if mm.is_nan() { self.scale } else { mm }))
     }
 
     /// A feed by the word of its unit, as cycles state it.
     pub(super) fn feed_in(&mut self, word: &str, value: f64, span: Span) -> Option<Feed> {
         let unit = feed_unit(word)?;
+        self.sign(word, span);
         self.feed_of(value, Some(unit), span)
     }
 
@@ -345,13 +464,18 @@ impl Reader<'_> {
             if !matches!(pressure.as_deref(), Some("LOW" | "MEDIUM" | "HIGH")) {
                 return self.error("arguments", "COOLNT states one kind of coolant", said.place(placed));
             }
+            self.leave_out(&format!("COOLNT {}", pressure.unwrap_or_default()), said.span);
         }
         match word.as_str() {
             "ON" | "FLOOD" => self.program.coolant(said.span),
             "OFF" => self.program.auxiliary(Auxiliary::CoolantStop, said.span),
             "MIST" | "TAP" | "THRU" => {
                 let message = format!("{word}: of coolants ON, FLOOD and OFF are compiled");
-                self.refuse("coolant", message, said.span);
+                self.push(
+                    Diagnostic::refusal("coolant", message)
+                        .at(said.span, "")
+                        .hint("COOLNT = \"comment\" in a table for --words makes remarks of them; the machine's own word for it stands under [program] coolant"),
+                );
             }
             _ => {
                 self.argument(&word, "COOLNT", said.span);

@@ -20,7 +20,14 @@ use toml::Spanned;
 pub const KEYS: &[Key] = &[
     Key::value("extends"),
     Key::value("circle"),
+    Key::value("circle_eleven"),
+    Key::value("movarc"),
     Key::value("circle_points"),
+    Key::value("cycle_heights"),
+    Key::value("cycle_rapid"),
+    Key::value("spindle_range"),
+    Key::value("tool_register"),
+    Key::value("tools"),
     Key::value("words"),
     Key::value("cycles"),
 ];
@@ -29,7 +36,14 @@ pub const KEYS: &[Key] = &[
 struct File {
     extends: Option<Spanned<String>>,
     circle: Option<Spanned<String>>,
+    circle_eleven: Option<Spanned<String>>,
+    movarc: Option<Spanned<String>>,
     circle_points: Option<Spanned<String>>,
+    cycle_heights: Option<Spanned<String>>,
+    cycle_rapid: Option<Spanned<String>>,
+    spindle_range: Option<Spanned<String>>,
+    tool_register: Option<Spanned<String>>,
+    tools: Option<BTreeMap<String, Spanned<u32>>>,
     words: Option<BTreeMap<String, Spanned<String>>>,
     cycles: Option<BTreeMap<String, Spanned<Vec<String>>>>,
 }
@@ -59,6 +73,8 @@ pub(super) enum Meaning {
     Opstop,
     /// NX: a path and its tool.
     Path,
+    /// Its end.
+    PathEnd,
     /// The cutter's shape.
     Cutter,
     /// NX: the tool's shape.
@@ -118,6 +134,15 @@ pub(super) enum Meaning {
 }
 
 impl Meaning {
+    /// Whether the tool goes somewhere where this is said. A GOTO looks for itself.
+    pub(super) fn cuts_or_goes(self) -> bool {
+        self.moves()
+            && !matches!(
+                self,
+                Meaning::Loadtl | Meaning::Load | Meaning::Goto | Meaning::Godlta | Meaning::Cycle
+            )
+    }
+
     /// Whether the tool moves, or is another one, where this is said.
     pub(super) fn moves(self) -> bool {
         matches!(
@@ -151,6 +176,7 @@ const MEANINGS: &[(&str, Meaning)] = &[
     ("stop", Meaning::Stop),
     ("opstop", Meaning::Opstop),
     ("path", Meaning::Path),
+    ("path-end", Meaning::PathEnd),
     ("cutter", Meaning::Cutter),
     ("tldata", Meaning::Tldata),
     ("toolno", Meaning::Toolno),
@@ -221,15 +247,115 @@ const ARC_POINTS: &[(&str, ArcPoints)] = &[
     ("unsure", ArcPoints::Unsure),
 ];
 
+/// The statements that state an arc by its axis, each with a sense of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ByAxis {
+    /// CIRCLE with six or seven numbers.
+    Circle,
+    /// CIRCLE with eleven numbers.
+    Eleven,
+    /// MOVARC.
+    Movarc,
+}
+
+impl ByAxis {
+    /// All of them.
+    pub(super) const ALL: [ByAxis; 3] = [ByAxis::Circle, ByAxis::Eleven, ByAxis::Movarc];
+
+    /// Its key in a table.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            ByAxis::Circle => "circle",
+            ByAxis::Eleven => "circle_eleven",
+            ByAxis::Movarc => "movarc",
+        }
+    }
+}
+
+/// What the heights of a cycle count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CycleHeights {
+    /// The point is the top of the hole, and all counts from it.
+    Top,
+    /// The point is the bottom of the hole, and the clearance is a place on Z: Autodesk's "Common ISO 4343 APT".
+    Iso4343,
+    /// The point is the top, and the clearance counts from the bottom: Autodesk's "Generative Machining APT".
+    Generative,
+    /// One of these two, and nobody knows which.
+    Unsure,
+}
+
+/// What RAPID within a cycle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CycleRapid {
+    /// Nothing: the point behind it is a hole.
+    Hole,
+    /// The end of the cycle.
+    Off,
+}
+
+/// What ADJUST and OSETNO of a tool call are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Register {
+    /// The register of the tool's length.
+    Length,
+    /// Nothing: the length is the tool's own.
+    LeftOut,
+}
+
+/// The senses of arcs, by the names that tables use.
+const HANDS: &[(&str, Hand)] = &[("right-hand", Hand::Right), ("left-hand", Hand::Left)];
+
+/// What the heights of cycles count from, by the names that tables use.
+const HEIGHTS: &[(&str, CycleHeights)] = &[
+    ("top", CycleHeights::Top),
+    ("iso-4343", CycleHeights::Iso4343),
+    ("generative", CycleHeights::Generative),
+    ("unsure", CycleHeights::Unsure),
+];
+
+/// What RAPID within a cycle is, by the names that tables use.
+const CYCLE_RAPID: &[(&str, CycleRapid)] = &[("hole", CycleRapid::Hole), ("off", CycleRapid::Off)];
+
+/// What ADJUST is, by the names that tables use.
+const REGISTERS: &[(&str, Register)] = &[("length", Register::Length), ("left-out", Register::LeftOut)];
+
+/// The value that a key names; where it names none, that is reported.
+fn chosen<T: Copy>(
+    value: Option<&Spanned<String>>,
+    names: &[(&'static str, T)],
+    what: &str,
+    unknown: &impl Fn(&Spanned<String>, &[&'static str], &str) -> Diagnostic,
+    found: &mut Diagnostics,
+) -> Option<T> {
+    let value = value?;
+    let known = names.iter().find(|(name, _)| name == value.get_ref()).map(|(_, known)| *known);
+    if known.is_none() {
+        let names: Vec<&'static str> = names.iter().map(|(name, _)| *name).collect();
+        found.push(unknown(value, &names, what));
+    }
+    known
+}
+
 /// A word table, with all that it extends.
 #[derive(Clone, Debug)]
 pub(super) struct Words {
     meanings: HashMap<String, Meaning>,
     cycles: BTreeMap<String, Vec<String>>,
-    /// The sense of CIRCLE.
-    pub(super) circle: Hand,
+    /// The sense of each statement of an arc, and whether a table for --words states it.
+    hands: [(Hand, bool); 3],
+    /// What the heights of cycles count from.
+    pub(super) heights: CycleHeights,
+    /// What RAPID within a cycle is, where that is stated.
+    pub(super) cycle_rapid: Option<CycleRapid>,
+    /// Whether RANGE of SPINDL is left out.
+    pub(super) range_left_out: bool,
+    /// The numbers of tools by their names in TOOL PATH, in capitals.
+    pub(super) tools: BTreeMap<String, u32>,
     /// What the points are that follow CIRCLE.
     pub(super) points: ArcPoints,
+    /// What ADJUST and OSETNO are.
+    pub(super) register: Register,
 }
 
 impl Words {
@@ -238,8 +364,13 @@ impl Words {
         let mut words = Words {
             meanings: HashMap::new(),
             cycles: BTreeMap::new(),
-            circle: Hand::Right,
+            hands: [(Hand::Right, false), (Hand::Left, false), (Hand::Right, false)],
+            heights: CycleHeights::Top,
+            cycle_rapid: None,
+            range_left_out: false,
+            tools: BTreeMap::new(),
             points: ArcPoints::Unsure,
+            register: Register::Length,
         };
         // A test reads every table, so that an error cannot hide here.
         let _ = words.add_built_in(name);
@@ -248,16 +379,20 @@ impl Words {
 
     fn add_built_in(&mut self, name: &str) -> Result<(), Diagnostics> {
         match TABLES.iter().find(|(known, _)| *known == name) {
-            Some((_, text)) => self.add(text, SourceId::INPUT),
+            Some((_, text)) => self.extend(text, SourceId::INPUT, false),
             None => Ok(()),
         }
     }
 
-    /// Adds a table: what it states replaces what was there.
+    /// Adds a table of a shop: what it states replaces what was there.
     ///
     /// # Errors
     /// It is no TOML, or has a meaning that does not exist.
     pub(super) fn add(&mut self, text: &str, source: SourceId) -> Result<(), Diagnostics> {
+        self.extend(text, source, true)
+    }
+
+    fn extend(&mut self, text: &str, source: SourceId, own: bool) -> Result<(), Diagnostics> {
         let file: File = tables::read(text, source, KEYS)?;
         let mut found = Diagnostics::new();
         let unknown = |spanned: &Spanned<String>, names: &[&'static str], what: &str| {
@@ -277,21 +412,27 @@ impl Words {
                 found.push(unknown(extends, &names, "a word table"));
             }
         }
-        if let Some(circle) = &file.circle {
-            match circle.get_ref().as_str() {
-                "right-hand" => self.circle = Hand::Right,
-                "left-hand" => self.circle = Hand::Left,
-                _ => found.push(unknown(circle, &["right-hand", "left-hand"], "a sense of circles")),
+        for (by, hand) in ByAxis::ALL.into_iter().zip([&file.circle, &file.circle_eleven, &file.movarc]) {
+            if let Some(hand) = chosen(hand.as_ref(), HANDS, "a sense of circles", &unknown, &mut found) {
+                self.hands[by as usize] = (hand, own);
             }
         }
-        if let Some(points) = &file.circle_points {
-            match ARC_POINTS.iter().find(|(name, _)| name == points.get_ref()) {
-                Some((_, known)) => self.points = *known,
-                None => {
-                    let names: Vec<&str> = ARC_POINTS.iter().map(|(name, _)| *name).collect();
-                    found.push(unknown(points, &names, "what the points behind a circle are"));
-                }
-            }
+        let register = chosen(file.tool_register.as_ref(), REGISTERS, "what ADJUST is", &unknown, &mut found);
+        self.register = register.unwrap_or(self.register);
+        let what = "what the points behind a circle are";
+        let points = chosen(file.circle_points.as_ref(), ARC_POINTS, what, &unknown, &mut found);
+        self.points = points.unwrap_or(self.points);
+        let what = "what the heights of a cycle count from";
+        let heights = chosen(file.cycle_heights.as_ref(), HEIGHTS, what, &unknown, &mut found);
+        self.heights = heights.unwrap_or(self.heights);
+        let what = "what RAPID within a cycle is";
+        self.cycle_rapid =
+            chosen(file.cycle_rapid.as_ref(), CYCLE_RAPID, what, &unknown, &mut found).or(self.cycle_rapid);
+        let range =
+            chosen(file.spindle_range.as_ref(), &[("left-out", true)], "what RANGE is", &unknown, &mut found);
+        self.range_left_out |= range.unwrap_or(false);
+        for (name, number) in file.tools.unwrap_or_default() {
+            self.tools.insert(name.trim().to_ascii_uppercase(), number.into_inner());
         }
         for (word, meaning) in file.words.unwrap_or_default() {
             match MEANINGS.iter().find(|(name, _)| name == meaning.get_ref()) {
@@ -309,6 +450,11 @@ impl Words {
             self.cycles.insert(kind.to_ascii_uppercase(), order);
         }
         found.into_result().map(|_| ())
+    }
+
+    /// The sense of a statement of an arc, and whether the shop stated it.
+    pub(super) fn hand(&self, by: ByAxis) -> (Hand, bool) {
+        self.hands[by as usize]
     }
 
     /// What a major word means.
@@ -351,7 +497,11 @@ mod tests {
             assert_eq!(words.meaning("goto"), Some(Meaning::Goto));
             assert_eq!(words.meaning("Tool   Path"), Some(Meaning::Path));
         }
-        assert_eq!(Words::built_in("nx").circle, Hand::Left);
+        assert_eq!(Words::built_in("nx").hand(ByAxis::Circle), (Hand::Left, false));
+        for (name, _) in TABLES {
+            // In every system that writes eleven numbers.
+            assert_eq!(Words::built_in(name).hand(ByAxis::Eleven).0, Hand::Left, "{name}");
+        }
         assert_eq!(Words::built_in("fusion").cycle("drill"), ["DEPTH", "CLEAR"]);
     }
 

@@ -20,7 +20,7 @@ use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::deviation::Bound;
 use crate::geom::logcurve::Measure;
-use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Shift, Step};
+use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Shift, Step, ToolCall};
 use crate::source::{Source, SourceId};
 use crate::units::{Axes, Kind, Position};
 
@@ -130,7 +130,7 @@ impl CutterJob {
         let home = self.process.retract.map(|(axis, _)| axis);
         if let Some(axis) = home {
             add(Step::Home(axis));
-            add(Step::Tool(self.process.tool));
+            add(Step::Tool(ToolCall::own(self.process.tool)));
         }
         if let Some(rpm) = self.process.spindle {
             add(Step::Spindle(rpm));

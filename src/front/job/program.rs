@@ -16,7 +16,7 @@ use super::{Job, MEET, Placed, parse};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
-use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step};
+use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step, ToolCall};
 use crate::source::{SourceId, Sources};
 use crate::units::Position;
 
@@ -106,7 +106,7 @@ impl Job {
         let home = self.process.retract.and_then(|(axis, _)| self.axes.index_of(axis));
         if let Some(axis) = home {
             add(Step::Home(axis), first);
-            add(Step::Tool(self.process.tool), first);
+            add(Step::Tool(ToolCall::own(self.process.tool)), first);
         }
         if let Some(rpm) = self.process.spindle {
             add(Step::Spindle(rpm), first);

@@ -346,8 +346,11 @@ impl Reader {
             return;
         }
         let angles = |line: &Template| {
-            let mut angles: Vec<String> =
-                line.variables().filter(|name| *name != "tool").map(str::to_owned).collect();
+            let mut angles: Vec<String> = line
+                .variables()
+                .filter(|name| !["tool", "register"].contains(name))
+                .map(str::to_owned)
+                .collect();
             angles.sort_unstable();
             angles
         };
@@ -446,14 +449,14 @@ impl Reader {
             setup: self.or(file.setup, base.map(|b| b.setup), "program.setup")?,
             start: lines(self, file.start, |b| &b.start, "start", &[])?,
             home: lines(self, file.home, |b| &b.home, "home", &["home"])?,
-            tool: lines(self, file.tool, |b| &b.tool, "tool", &["tool"])?,
+            tool: lines(self, file.tool, |b| &b.tool, "tool", &["tool", "register"])?,
             spindle: lines(self, file.spindle, |b| &b.spindle, "spindle", &["rpm"])?,
             tool_spindle: lines(
                 self,
                 file.tool_spindle,
                 |b| &b.tool_spindle,
                 "tool_spindle",
-                &["tool", "rpm"],
+                &["tool", "register", "rpm"],
             )?,
             coolant: lines(self, file.coolant, |b| &b.coolant, "coolant", &[])?,
             coolant_stop: lines(self, file.coolant_stop, |b| &b.coolant_stop, "coolant_stop", &[])?,
@@ -461,7 +464,13 @@ impl Reader {
             stop: lines(self, file.stop, |b| &b.stop, "stop", &[])?,
             optional_stop: lines(self, file.optional_stop, |b| &b.optional_stop, "optional_stop", &[])?,
             dwell: lines(self, file.dwell, |b| &b.dwell, "dwell", &["seconds"])?,
-            tip_control: lines(self, file.tip_control, |b| &b.tip_control, "tip_control", &["tool"])?,
+            tip_control: lines(
+                self,
+                file.tip_control,
+                |b| &b.tip_control,
+                "tip_control",
+                &["tool", "register"],
+            )?,
             tip_control_end: lines(
                 self,
                 file.tip_control_end,
@@ -469,7 +478,13 @@ impl Reader {
                 "tip_control_end",
                 &[],
             )?,
-            plane: lines(self, file.plane, |b| &b.plane, "plane", &["first", "second", "third", "tool"])?,
+            plane: lines(
+                self,
+                file.plane,
+                |b| &b.plane,
+                "plane",
+                &["first", "second", "third", "tool", "register"],
+            )?,
             plane_end: lines(self, file.plane_end, |b| &b.plane_end, "plane_end", &[])?,
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
             unwind: lines(self, file.unwind, |b| &b.unwind, "unwind", &["axis"])?,

@@ -5,6 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dialect::arc;
 use crate::dialect::iso::Offset;
 use crate::geom::arc::Plane;
+use crate::ir::ToolCall;
 use crate::machine::template::Template;
 use std::ops::Range;
 
@@ -18,7 +19,8 @@ impl Reader<'_> {
             match (is(lines), due) {
                 (false, _) => {}
                 (true, true) => {
-                    self.offset_due = self.assembler.tool();
+                    self.offset_due = self.assembler.tool().map(ToolCall::register);
+                    self.offset_free = offset.free;
                     self.offset_tool = None;
                 }
                 // The length comes with the tool.
@@ -78,17 +80,21 @@ impl Reader<'_> {
         let (offset, number) = (block.offset.take(), block.h.take());
         // Due after a tool call; after that each section may call it again.
         match (offset, number, self.offset_due.or(self.offset_again)) {
-            (Some(_), Some((h, range)), Some(tool)) => {
-                if h.units(0) != Some(i64::from(tool)) {
-                    self.error(
-                        "tool-offset",
-                        format!("the offset of tool {tool} is called here, not that of H{h}"),
-                        range,
-                    );
+            (Some(_), Some((h, range)), Some(due)) => {
+                let register = h.units(0).and_then(|h| u32::try_from(h).ok());
+                let takes = match register {
+                    Some(register) if register == due || self.offset_free => {
+                        self.assembler.takes_register(register)
+                    }
+                    Some(_) | None => false,
+                };
+                if !takes {
+                    let message = format!("the length of register {due} is due here, not that of H{h}");
+                    self.error("tool-offset", message, range);
                 }
                 self.offset_due = None;
                 self.offset_again = None;
-                self.offset_tool = Some(tool);
+                self.offset_tool = self.assembler.tool().map(ToolCall::register);
                 self.takes_length(whole);
             }
             (Some(range), _, _) => {
@@ -96,7 +102,7 @@ impl Reader<'_> {
             }
             (None, Some((_, range)), _) => self.error("word-unknown", "H is read with G43 only", range),
             (None, None, _) => {
-                let Some(tool) = self.offset_due else { return };
+                let Some(h) = self.offset_due else { return };
                 let moves = match self.motion {
                     Motion::None => false,
                     Motion::Rapid => block.named().iter().any(|(axis, _)| Some(*axis) == self.z),
@@ -104,11 +110,9 @@ impl Reader<'_> {
                 };
                 if moves {
                     self.offset_due = None;
-                    self.error(
-                        "tool-offset-missing",
-                        format!("tool {tool} moves before its `G43 H{tool}`"),
-                        whole,
-                    );
+                    let call = self.assembler.tool().unwrap_or(ToolCall::own(h));
+                    let message = format!("tool {} moves before its `G43 H{h}`", call.number);
+                    self.error("tool-offset-missing", message, whole);
                 }
             }
         }
