@@ -407,3 +407,42 @@ fn a_tolerance_of_metres_is_a_slip() {
         assert_eq!(code(&ran), expected, "{tolerance}: {}", stderr(&ran));
     }
 }
+
+/// What has no end is read no farther than a file may be long.
+#[cfg(unix)]
+#[test]
+fn an_input_without_end_is_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path();
+    std::os::unix::fs::symlink("/dev/zero", at.join("zero.dxf")).expect("a link");
+    fs::write(
+        at.join("job.toml"),
+        "name = \"ZERO\"\n[process]\nfeed = 100.0\n[[curve]]\nfile = \"zero.dxf\"\n",
+    )
+    .expect("written");
+    let mill = mill();
+    let cases: [&[&str]; 4] = [
+        &["compile", "/dev/zero", "--to", "mazak", "-o", "out.nc"],
+        &["compile", "job.toml", "--to", "mazak", "-o", "out.nc"],
+        &["compile", &mill, "--to", "/dev/zero", "-o", "out.nc"],
+        &["verify", "/dev/zero", "--against", &mill, "--to", "mazak"],
+    ];
+    for case in cases {
+        let output = splinepost(case, at);
+        assert_eq!(code(&output), 2, "{case:?}: {}", stderr(&output));
+        let told = stderr(&output);
+        assert!(
+            told.contains("larger than 512 MiB") && told.matches("error[").count() == 1,
+            "{case:?}: {told}"
+        );
+        assert!(!at.join("out.nc").exists());
+    }
+    let endless = fs::File::open("/dev/zero").expect("zeros");
+    let output = Command::new(env!("CARGO_BIN_EXE_splinepost"))
+        .args(["compile", "-", "--to", "mazak"])
+        .stdin(endless)
+        .output()
+        .expect("it runs");
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("standard input is larger than 512 MiB"), "{}", stderr(&output));
+}

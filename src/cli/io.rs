@@ -76,18 +76,50 @@ fn failed(id: &'static str, error: &anyhow::Error) -> Diagnostics {
     Diagnostic::error(id, format!("{error:#}")).into()
 }
 
+/// The greatest size of an input, in MiB, be it a file, one that it names, or standard input. What has no end, as a device or a
+/// pipe that is never closed, is read no farther; a part program of that size is beyond what a control loads.
+const MOST_MIB: u64 = 512;
+
+/// All that there is to read, or nothing where it is more than may be.
+fn read_at_most(from: impl Read, expected: u64) -> io::Result<Option<Vec<u8>>> {
+    let most = MOST_MIB << 20;
+    if most < expected {
+        return Ok(None);
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(expected + 1).unwrap_or_default());
+    from.take(most + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= most).then_some(bytes))
+}
+
+/// The bytes of a file at a path.
+fn read_file(path: &Path) -> io::Result<Option<Vec<u8>>> {
+    let file = fs::File::open(path)?;
+    let expected = file.metadata().map_or(0, |about| about.len());
+    read_at_most(file, expected)
+}
+
+/// What is said of an input that is too large.
+fn too_large() -> String {
+    format!("larger than {MOST_MIB} MiB, the most that is read of one input")
+}
+
 /// The bytes of a file, or of standard input for `-`.
 fn read_bytes(path: &str) -> Result<Vec<u8>, Diagnostics> {
     if path != "-" && Path::new(path).is_dir() {
         return Err(Diagnostic::error("file-is-directory", format!("{path} is a directory")).into());
     }
-    let mut bytes = Vec::new();
-    let read = if path == "-" {
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes).context("cannot read standard input")
+    let (name, read) = if path == "-" {
+        let read = read_at_most(io::stdin().lock(), 0);
+        ("standard input", read.context("cannot read standard input"))
     } else {
-        fs::read(path).with_context(|| format!("cannot read {path}"))
+        (path, read_file(Path::new(path)).with_context(|| format!("cannot read {path}")))
     };
-    read.map_err(|error| failed("file-unreadable", &error))
+    let bytes = read.map_err(|error| failed("file-unreadable", &error))?;
+    bytes.ok_or_else(|| {
+        Diagnostic::error("file-too-large", format!("{name} is {}", too_large()))
+            .hint("a file of that size has to be split into several")
+            .into()
+    })
 }
 
 /// The text of a file, which must be UTF-8.
@@ -122,7 +154,10 @@ pub(crate) fn load_named(language: &Language, sources: &mut Sources) {
         let bytes = if path.is_dir() {
             Err("it is a directory".to_owned())
         } else {
-            fs::read(&path).map_err(|error| error.to_string())
+            match read_file(&path) {
+                Ok(bytes) => bytes.ok_or_else(|| format!("it is {}", too_large())),
+                Err(error) => Err(error.to_string()),
+            }
         };
         sources.name(&name, bytes.map(|bytes| Source::decode(path.display().to_string(), bytes)));
     }
