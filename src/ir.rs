@@ -330,6 +330,8 @@ pub struct Decimals {
     pub program: Program<Decimal, Written>,
     /// How many decimals each axis has.
     pub digits: [u8; MAX_AXES],
+    /// The axes that a text names nowhere, though it has a path that starts somewhere in them.
+    pub unnamed: [bool; MAX_AXES],
     /// What to set up, in remarks before the first step.
     pub setup: Vec<String>,
 }

@@ -183,6 +183,7 @@ fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Resul
     }
     length_within_decimals(&intent, &machine)?;
     let tolerance = tolerance(&intent, &machine, options)?;
+    verify::contours(&intent, &machine, tolerance)?;
     let mut warnings = intent.warnings.clone();
     let asked = options.motion.or(machine.motion);
     let motion = match asked {
@@ -227,11 +228,10 @@ fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Resul
                 return Ok(Output { text, report, motion, intent, tolerance, machine, setup, warnings });
             }
             Err(error) => {
-                let refine = error
-                    .diagnostics
-                    .0
-                    .iter()
-                    .all(|d| matches!(d.id, "deviation-too-large" | "direction-too-far"));
+                // Where a small path became a point, a finer fit makes it one again.
+                let refine = error.diagnostics.0.iter().all(|d| {
+                    matches!(d.id, "deviation-too-large" | "direction-too-far" | "cut-without-length")
+                });
                 failure = error;
                 if !refine || (exact && share == 0.05 && !pass::approximate::may_be_exact(&intent)) {
                     break;

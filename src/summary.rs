@@ -143,6 +143,13 @@ impl Summary {
                     .to_owned(),
             );
         }
+        if let Some(rests @ 1..) = report.map(|report| report.rests) {
+            let (points, lead) =
+                if rests == 1 { ("1 point", "stands") } else { (&*format!("{rests} points"), "stand") };
+            notes.push(format!(
+                "{points} of the input {lead} where the tool is already, in the decimals of the machine: nothing moves there"
+            ));
+        }
         if report.is_some() {
             notes.push(
             "the proof covers the programmed path, not what the control's own smoothing or compressor adds"

@@ -13,6 +13,10 @@
 //! | lines | lines | point by point | proved |
 //! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
 //!
+//! Beside that, whatever the tolerance: every path starts where a block has brought the tool ([`reached`]), no cut becomes a
+//! point or a point a cut ([`lengths`]), and the remarks at which an operator restarts stand where they were asked
+//! ([`sections`]).
+//!
 //! Where a path starts late or ends early by some rounding, the rest of the curve is missed by no more than that times
 //! the curve's own speed, which is added to the bound.
 //!
@@ -21,9 +25,12 @@
 mod arcs;
 mod curve;
 mod form;
+mod lengths;
 mod lines;
 mod logarithmic;
+mod reached;
 mod report;
+mod sections;
 mod splined;
 
 pub use arcs::{spelled_auxiliary, to_arc};
@@ -44,7 +51,11 @@ use crate::setup::Setup;
 use crate::source::{SourceId, Span};
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
 
+use reached::Unreached;
+use sections::Sections;
+
 pub use form::same_form;
+pub(crate) use lengths::contours;
 pub use report::{Report, Status};
 pub use splined::Splined;
 
@@ -75,6 +86,7 @@ pub fn verify(
         cutting_length: 0.0,
         minutes: 0.0,
         feed_error: 0.0,
+        rests: 0,
         setup: Setup::default(),
     };
     if decimals.program.axes != intent.program.axes {
@@ -110,8 +122,11 @@ pub fn verify(
     let asked = report.setup.remarks(machine);
     let leading = decimals.setup.get(asked.len()..).unwrap_or_default();
     let radius = intent.radius();
+    contours(intent, machine, tolerance)?;
     let mut cursor = Cursor {
         decimals,
+        unreached: reached::unreached(decimals),
+        sections: Sections::of(intent, machine),
         machine,
         text,
         id,
@@ -129,7 +144,7 @@ pub fn verify(
         match &located.step {
             Step::Comment(comment) => {
                 for line in crate::machine::remark::wrapped(comment, machine) {
-                    cursor.comment(&line)?;
+                    cursor.section(&line)?;
                 }
             }
             Step::Coolant => cursor.meet("the coolant", |step| matches!(step, Step::Coolant))?,
@@ -163,9 +178,10 @@ pub fn verify(
                 })?;
             }
             Step::Cut(Cut { feed, role, curve }) => {
-                cursor.skip_comments();
+                cursor.skip_remarks()?;
                 let (at, within) = (cursor.at, cursor.within);
                 let gap = std::mem::take(&mut cursor.gap);
+                cursor.begins_where_the_tool_is(curve)?;
                 let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
                 // The path before ends that far from where this one starts; a turn takes it along.
                 found.deviation.mm += gap;
@@ -197,6 +213,7 @@ pub fn verify(
                         Some(report.from_ideal.map_or(from_ideal, |known| known.max(from_ideal)));
                 }
                 report.map = cursor.map;
+                report.rests += found.rests;
                 if *role != Role::Approach {
                     report.path_blocks += found.path_blocks;
                     report.cutting_length += found.cutting_length;
@@ -206,7 +223,7 @@ pub fn verify(
             }
         }
     }
-    cursor.skip_comments();
+    cursor.skip_remarks()?;
     if let Some(left) = cursor.step() {
         let diagnostic = Diagnostic::refusal("more-than-asked", "the program goes on after what was asked");
         return Err(diagnostic.at(cursor.place(left), "").into());
@@ -246,6 +263,10 @@ fn too_far(deviation: Bound, tolerance: f64, machine: &Machine, axes: &Axes) -> 
 /// Where in the program the comparison stands: a step, and in a run of lines the points already met.
 struct Cursor<'p> {
     decimals: &'p Decimals,
+    /// Where a cut begins without a block that brought the tool there.
+    unreached: Unreached,
+    /// The remarks that start a section.
+    sections: Sections,
     machine: &'p Machine,
     text: &'p str,
     id: SourceId,
@@ -272,6 +293,8 @@ struct Found {
     cutting_length: f64,
     minutes: f64,
     feed_error: f64,
+    /// How many lines lead to where the tool is already.
+    rests: usize,
     splined: Option<splined::Run>,
 }
 
@@ -285,6 +308,7 @@ impl Found {
             cutting_length: 0.0,
             minutes: 0.0,
             feed_error: 0.0,
+            rests: 0,
             splined: None,
         }
     }
@@ -295,29 +319,6 @@ type ReadStep = Located<Decimal, Written>;
 impl<'p> Cursor<'p> {
     fn step(&self) -> Option<&'p ReadStep> {
         self.decimals.program.steps.get(self.at)
-    }
-
-    fn skip_comments(&mut self) {
-        while matches!(self.step(), Some(Located { step: Step::Comment(_), .. })) {
-            self.at += 1;
-        }
-    }
-
-    /// Meets a remark; others may stand before it.
-    fn comment(&mut self, asked: &str) -> Result<(), Diagnostics> {
-        if let Some((read, rest)) = self.leading.split_first()
-            && read == asked
-        {
-            self.leading = rest;
-            return Ok(());
-        }
-        while let Some(Located { step: Step::Comment(read), .. }) = self.step() {
-            self.at += 1;
-            if read == asked {
-                return Ok(());
-            }
-        }
-        Err(self.differs("comment-differs", format!("here the remark `{asked}` was asked")))
     }
 
     /// A position in units of an axis' last decimal, rounded as the text counts it.
@@ -400,7 +401,7 @@ impl<'p> Cursor<'p> {
 
     /// Meets a step that is no path.
     fn meet(&mut self, what: &str, is: impl Fn(&Step<Decimal, Written>) -> bool) -> Result<(), Diagnostics> {
-        self.skip_comments();
+        self.skip_remarks()?;
         match self.step() {
             None => Err(self.differs("less-than-asked", format!("the program ends where {what} was asked"))),
             Some(located) if is(&located.step) && self.within == 0 => {
@@ -571,7 +572,8 @@ mod tests {
             lines: Vec::new(),
         };
         let program = Program { name: String::new(), number: 0, axes: Axes::xyza(), steps: Vec::new() };
-        let decimals = Decimals { program, digits: [6; MAX_AXES], setup: Vec::new() };
+        let decimals =
+            Decimals { program, digits: [6; MAX_AXES], unnamed: [false; MAX_AXES], setup: Vec::new() };
         let spline = to_nurbs(&decimals, &nurbs).unwrap();
         let lengths: Vec<f64> = spline.beziers().map(|(_, length)| length).collect();
         assert_eq!(lengths, [far as f64, 1.0, 1.0, 1.0]);

@@ -3,6 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `apt` | CL data of CAM systems, from their text to proved programs |
+//! | `cases` | small inputs that went wrong once, and the right value of each |
 //! | `golden` | inputs and every machine's output, side by side, as bytes |
 //! | `files` | curve files: DXF, IGES, STEP |
 //! | `errors` | bad inputs and their rendered diagnostics |

@@ -276,7 +276,7 @@ impl<'m> Assembler<'m> {
     /// A program without steps, to evaluate a curve in.
     pub fn empty(&self) -> Decimals {
         let program = Program { name: String::new(), number: 0, axes: self.machine.axes, steps: Vec::new() };
-        Decimals { program, digits: self.digits, setup: Vec::new() }
+        Decimals { program, digits: self.digits, unnamed: [false; MAX_AXES], setup: Vec::new() }
     }
 
     /// The tool that was called last.
@@ -423,8 +423,8 @@ impl<'m> Assembler<'m> {
     }
 
     /// Refuses cuts in which an axis of the program is nowhere known: at its home, or before anything named it. Where it is then
-    /// only the machine knows, and no other program could go there.
-    fn nowhere(&mut self) {
+    /// only the machine knows, and no other program could go there. Which axes cuts start in and nothing names at all.
+    fn nowhere(&mut self) -> [bool; MAX_AXES] {
         let mut named = self.named;
         for located in &self.steps {
             if let Step::Rapid(targets) = &located.step {
@@ -443,6 +443,7 @@ impl<'m> Assembler<'m> {
                     .hint("nothing named it yet, or it went to its home: a rapid before says where it is"),
             );
         }
+        std::array::from_fn(|i| self.missing[i].is_some() && !named[i])
     }
 
     /// The program, or what is wrong with it.
@@ -451,7 +452,7 @@ impl<'m> Assembler<'m> {
     /// The diagnostics hold one.
     pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
         self.flush();
-        self.nowhere();
+        let unnamed = self.nowhere();
         if let Some((unknown, span)) = self.unknown
             && (0..MAX_AXES).any(|i| unknown[i] && self.named[i])
         {
@@ -495,6 +496,6 @@ impl<'m> Assembler<'m> {
         let setup = setup.collect();
         let Assembler { name, number, machine, digits, .. } = self;
         let program = Program { name, number, axes: machine.axes, steps };
-        Ok(Warned { value: Decimals { program, digits, setup }, warnings })
+        Ok(Warned { value: Decimals { program, digits, unnamed, setup }, warnings })
     }
 }

@@ -8,6 +8,7 @@
 mod coolant;
 mod named;
 mod plane;
+mod reach;
 mod tip;
 mod whole;
 
@@ -48,6 +49,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
     position_at_home(&mut intent);
     shifts(&mut intent, &machine)?;
     whole::places(&mut intent, &machine)?;
+    reach::reach(&mut intent)?;
     named::remarks(&mut intent, &machine);
     Ok(intent)
 }

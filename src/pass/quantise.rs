@@ -127,7 +127,7 @@ pub fn quantise(
         steps.push(Located { step, span });
     }
     let program = Program { steps, name: program.name, number: program.number, axes: program.axes };
-    Ok(Decimals { program, digits, setup: Vec::new() })
+    Ok(Decimals { program, digits, unnamed: [false; MAX_AXES], setup: Vec::new() })
 }
 
 /// A coefficient with so many decimals, or as many as a float of its size holds.

@@ -21,6 +21,7 @@ pub fn to_arc(decimals: &Decimals, arc: &WrittenArc) -> Option<Arc> {
     arc.arc(&decimals.digits)
 }
 
+/// The distance of two places of which each coordinate is in mm.
 fn distance(p: &Position, q: &Position) -> f64 {
     p.iter().zip(q).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
 }
@@ -31,6 +32,9 @@ struct Part {
     /// Which share of the whole arc is met behind it.
     to: f64,
     blocks: usize,
+    /// How long what was written is, mm, or whether it has a length at all, and how far it turns, radians.
+    length: f64,
+    turned: f64,
 }
 
 impl Cursor<'_> {
@@ -39,6 +43,7 @@ impl Cursor<'_> {
     pub(super) fn arc(&mut self, asked: &Arc, tolerance: f64) -> Result<Found, Diagnostics> {
         let feed = self.written()?.feed;
         let (mut bound, mut blocks, mut from) = (Bound::ZERO, 0, 0.0);
+        let (mut length, mut turned) = (0.0, 0.0);
         while from < 1.0 {
             let cut = match self.step().and_then(|located| located.step.cut()) {
                 Some(cut) => cut,
@@ -63,11 +68,15 @@ impl Cursor<'_> {
             }
             bound = bound.max(part.bound);
             blocks += part.blocks;
+            (length, turned) = (length + part.length, turned + part.turned);
             from = part.to;
             if !(bound.mm <= tolerance) {
                 // That is told of the arc, not that another block is missing.
                 break;
             }
+        }
+        if bound.mm <= tolerance {
+            self.arc_has_length(asked, length, turned)?;
         }
         Ok(Found { deviation: bound, path_blocks: blocks, cutting_length: asked.length(), ..Found::new() })
     }
@@ -98,8 +107,11 @@ impl Cursor<'_> {
         let Some(meant) = to_arc(self.decimals, arc) else { return Err(differs(self)) };
         let to = Self::share(asked, from, meant.sweep(), tolerance);
         let part = asked.part(from, to);
-        // The direction of the tool is no place.
-        let mut rad = 0.0f64;
+        let mut rad = self.rotary_apart(&start, &part.start()).max(self.rotary_apart(&end, &part.end()));
+        // Rotary axes go along as mm, as they count; the direction of the tool is no place.
+        let in_mm = |p: &Position| self.in_mm(p);
+        let part = part.mapped_along(in_mm);
+        (start, end) = (in_mm(&start), in_mm(&end));
         let directed = self.decimals.program.axes.direction();
         if let Some(first) = directed {
             for (p, on) in [(&mut start, part.start()), (&mut end, part.end())] {
@@ -114,7 +126,7 @@ impl Cursor<'_> {
             ArcBy::Way(_) => {
                 // `start` and `end` are those of the part, but for their places.
                 let along = |p: &Position| {
-                    let mut place = *p;
+                    let mut place = in_mm(p);
                     if let Some(first) = directed {
                         place[first..].copy_from_slice(&start[first..]);
                     }
@@ -133,7 +145,13 @@ impl Cursor<'_> {
             return Err(differs(self));
         }
         self.advance();
-        Ok(Part { bound: Bound { mm, rad }, to, blocks: 1 })
+        Ok(Part {
+            bound: Bound { mm, rad },
+            to,
+            blocks: 1,
+            length: meant.length(),
+            turned: meant.sweep().abs(),
+        })
     }
 
     /// Lines that stand for an arc, one after the other up to its end, or to that of their run. Each ends where it should at
@@ -147,12 +165,12 @@ impl Cursor<'_> {
     ) -> Result<Part, Diagnostics> {
         let rest = asked.part(from, 1.0);
         let end = rest.end();
-        let mut worst = 0.0f64;
+        let (mut worst, mut rad);
         if from == 0.0 {
-            self.starts_at(&rest.start(), points)?;
+            Bound { mm: worst, rad } = self.starts_at(&rest.start(), points)?;
         } else {
             let before = self.decimals.position(&self.before(points));
-            worst = (0..3).map(|i| (before[i] - rest.start()[i]).abs()).sum();
+            (worst, rad) = (self.apart(&before, &rest.start()), self.rotary_apart(&before, &rest.start()));
         }
         // The lines may run on into others of the same feed, so that the end of the arc is looked for.
         let slack =
@@ -192,19 +210,21 @@ impl Cursor<'_> {
         };
         let part = asked.part(from, to);
         let directed = self.decimals.program.axes.direction();
-        let mut rad = 0.0f64;
-        for (i, mut p) in all().take(count).enumerate() {
+        let (mut length, mut last) = (0.0, self.decimals.position(&self.before(points)));
+        for (i, p) in all().take(count).enumerate() {
+            length += self.apart(&p, &last);
+            last = p;
             let on = part.eval((i + 1) as f64 / count as f64);
             if let Some(first) = directed {
                 rad = rad.max(direction::between(&p, &on, first));
-                p[first..].copy_from_slice(&on[first..]);
             }
-            worst = worst.max(distance(&p, &on));
+            worst = worst.max(self.apart(&p, &on));
+            rad = rad.max(self.rotary_apart(&p, &on));
         }
         let mm = worst + sagitta(part.radius(), part.sweep().abs() / count as f64);
         self.within += count;
         self.leave(points);
-        Ok(Part { bound: Bound { mm, rad }, to, blocks: count })
+        Ok(Part { bound: Bound { mm, rad }, to, blocks: count, length, turned })
     }
 
     /// What is wrong where an arc stands and another curve was asked.

@@ -96,6 +96,9 @@ impl Cursor<'_> {
             self.through_curve(asked, Form::Through(*kind), points, &mut found)?;
             return Ok(found);
         }
+        if let Curve::Lines(line) = asked.curve {
+            found.rests = self.rests(line);
+        }
         let Some(last) = pieces.last() else {
             return Err(self.differs("not-comparable", "only the control knows this curve".to_owned()));
         };
@@ -129,6 +132,7 @@ impl Cursor<'_> {
         };
         let time = minutes(&path, asked, &axes);
         let (path, pieces) = (scaled(path), scaled(pieces));
+        self.has_length(&pieces, &path, &metric)?;
         let reach = turning.map(|first| (first, metric.reach()));
         let followed = follow_turning(&path, &pieces, reach, asked.tolerance)
             .map_err(|error| self.differs("order-differs", error.to_string()))?;
@@ -301,6 +305,7 @@ impl Cursor<'_> {
             let message = format!("the spline has {} points, not {}", points.count(), line.count());
             return Err(self.differs("points-differ", message));
         }
+        found.deviation = self.starts_at(&line.start, points)?;
         self.same_points(&line, points, asked, found)?;
         found.path_blocks = points.count();
         self.advance();

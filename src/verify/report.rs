@@ -50,6 +50,8 @@ pub struct Report {
     pub minutes: f64,
     /// How far the speed is from the one asked for inside a block, as a share of it.
     pub feed_error: f64,
+    /// How many blocks lead to where the tool is already, because a point was asked twice or a step is below the last decimal.
+    pub rests: usize,
     /// What to know at the machine.
     pub setup: Setup,
 }

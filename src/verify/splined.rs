@@ -168,6 +168,7 @@ impl Cursor<'_> {
             all.path_blocks += found.path_blocks;
             all.cutting_length += found.cutting_length;
             all.minutes += found.minutes;
+            all.rests += found.rests;
             all.splined = match (all.splined, found.splined) {
                 (Some(own), Some(more)) => Some(own.with(&more)),
                 (own, more) => own.or(more),

@@ -2,8 +2,39 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `bounds` | what is stated of lines, against the distance that is there |
 //! | `cl` | CL data: what its statements mean, as it stands in the program of every machine |
+//! | `damaged` | the remarks at which an operator restarts a program, each with every fault |
 //! | `left` | what a program leaves behind on the control, at tool changes and at its end, and what its remarks are made of |
+//! | `starts` | where paths begin, and cuts without length |
 
+mod bounds;
 mod cl;
+mod damaged;
 mod left;
+mod starts;
+
+use splinepost::diagnostic::Diagnostics;
+use splinepost::machine::Machine;
+use splinepost::source::{Source, SourceId, Sources};
+use splinepost::verify::{Report, verify};
+use splinepost::{Options, Output, compile, front};
+
+/// The text of a case.
+fn case(name: &str) -> String {
+    let path = crate::support::folder("fixtures/cases").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// Compiles an input of any language.
+fn compiled(text: &str, machine: &Machine, options: &Options) -> Result<Output, Diagnostics> {
+    let sources = Sources::new(Source::new("input", text));
+    let language = front::detect(sources.get(SourceId::INPUT).expect("an input"))?;
+    compile(&sources, language, machine, options).map_err(|failure| failure.diagnostics)
+}
+
+/// Proves a text by its meaning alone: its form may be another.
+fn proved(output: &Output, text: &str) -> Result<Report, Diagnostics> {
+    let reading = (output.machine.dialect.read)(text, SourceId::INPUT, &output.machine)?;
+    verify(&output.intent, &reading.value, text, SourceId::INPUT, &output.machine, output.tolerance)
+}

@@ -35,6 +35,12 @@ fn norm(a: [f64; 3]) -> f64 {
     a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
+/// How far two places are apart in what goes along with X Y Z. Those coordinates run evenly along both arcs, so that this is
+/// greatest at an end; rotary ones are to be mm here, as they count.
+fn others(p: &Position, q: &Position) -> f64 {
+    (3..MAX_AXES).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>().sqrt()
+}
+
 impl Arc {
     /// How far a control that is given `start`, `end`, `center` and `turns` whole turns before the way to the end may be from
     /// this arc, mm: the bound above, with some ulps for its own rounding. Infinite where that is no arc, or one in another
@@ -87,9 +93,7 @@ impl Arc {
         // The sweeps are compared without whole turns taken away: a full circle is no standstill.
         let last = first + (sweep - self.sweep).abs();
         let along = (start[w] - self.start[w]).abs().max((end[w] - self.end[w]).abs());
-        let rest = (0..MAX_AXES).filter(|i| ![u, v, w].contains(i)).fold(0.0f64, |worst, i| {
-            worst.max((start[i] - self.start[i]).abs()).max((end[i] - self.end[i]).abs())
-        });
+        let rest = others(start, &self.start).max(others(end, &self.end));
         let bound = apart + radius(start).max(radius(end)) + self.radius * last + along + rest;
         let scale = self.radius + self.center[0].abs() + self.center[1].abs();
         bound + 64.0 * f64::EPSILON * (scale + self.radius * self.sweep.abs())
@@ -119,9 +123,7 @@ impl Arc {
             let (p, q) = (self.eval(t), other.eval(t));
             worst = worst.max(less([p[0], p[1], p[2]], [q[0], q[1], q[2]]));
         }
-        let rest = (3..MAX_AXES).fold(0.0f64, |worst, i| {
-            worst.max((self.start[i] - other.start[i]).abs()).max((self.end[i] - other.end[i]).abs())
-        });
+        let rest = others(&self.start, &other.start).max(others(&self.end, &other.end));
         let scale = self.radius + r2 + norm(self.middle()) + norm(other.middle());
         let between = second / (8.0 * count * count);
         worst + between + 2.0 * other.misfit + rest + 256.0 * f64::EPSILON * scale

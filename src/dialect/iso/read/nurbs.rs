@@ -263,6 +263,7 @@ impl Reader<'_> {
         let empty = Decimals {
             program: Program { name: String::new(), number: 0, axes, steps: Vec::new() },
             digits: self.assembler.digits,
+            unnamed: [false; MAX_AXES],
             setup: Vec::new(),
         };
         if let Err(error) = crate::verify::to_nurbs(&empty, &nurbs) {
