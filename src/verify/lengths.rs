@@ -45,7 +45,7 @@ fn is_point(pieces: &[Bezier]) -> bool {
 
 /// The greatest length that rounding both ends of a path can hide, mm: each is moved by half a unit of the last decimal in every
 /// axis at most, so that ends less than a unit apart in each may become one place.
-fn hidden(digits: &[u8; MAX_AXES], metric: &Metric) -> f64 {
+fn hidden(digits: [u8; MAX_AXES], metric: &Metric) -> f64 {
     let unit: Position = std::array::from_fn(|i| units_to_f64(1, digits[i]));
     metric.distance(&unit, &[0.0; MAX_AXES]).mm
 }
@@ -62,7 +62,7 @@ impl Cursor<'_> {
         written: &[Bezier],
         metric: &Metric,
     ) -> Result<(), Diagnostics> {
-        let hidden = hidden(&self.decimals.digits, metric);
+        let hidden = hidden(self.decimals.digits, metric);
         if is_point(written) && hidden < at_least(asked) {
             let length = at_least(asked);
             return Err(self.refused_length(format!(
@@ -79,7 +79,7 @@ impl Cursor<'_> {
     /// is one more than half that is missing.
     pub(super) fn arc_has_length(&self, asked: &Arc, written: f64, turned: f64) -> Result<(), Diagnostics> {
         let kinds: Vec<Kind> = self.decimals.program.axes.as_slice().iter().map(|(_, kind)| *kind).collect();
-        let hidden = hidden(&self.decimals.digits, &Metric::new(&kinds, self.radius));
+        let hidden = hidden(self.decimals.digits, &Metric::new(&kinds, self.radius));
         // The rounding of its ends hides the chord of a short arc; one of a radian is longer by a 23rd.
         let least =
             if asked.sweep().abs() < 1.0 { self.apart(&asked.start(), &asked.end()) } else { asked.length() };
@@ -124,7 +124,7 @@ impl Cursor<'_> {
 pub(crate) fn contours(intent: &Intent, machine: &Machine, tolerance: f64) -> Result<(), Diagnostics> {
     let frame = Frame { axes: &intent.program.axes, machine, radius: intent.radius() };
     let metric = frame.metric(tolerance);
-    let hidden = hidden(&machine.axis_digits(), &metric);
+    let hidden = hidden(machine.axis_digits(), &metric);
     // How long the contour is so far, and its first curve that is not made of lines.
     let (mut length, mut curve) = (0.0, None);
     let ended = |length: f64, curve: Option<Span>| match curve {

@@ -75,10 +75,11 @@ impl Cursor<'_> {
     /// Holds the start of the path that comes next.
     pub(super) fn begins_where_the_tool_is(&self, asked: &Curve) -> Result<(), Diagnostics> {
         let Some(missing) = self.unreached.get(&self.at).filter(|_| self.within == 0) else { return Ok(()) };
-        let from_nowhere = |axis: usize| match asked {
+        let axes = &self.decimals.program.axes;
+        let count = axes.direction().unwrap_or(axes.count());
+        let from_nowhere = match asked {
             Curve::Lines(line) => {
-                line.points().next().is_some_and(|first| first[axis] == line.start[axis])
-                    && !self.decimals.unnamed[axis]
+                line.points().next().is_some_and(|first| first[..count] == line.start[..count])
             }
             Curve::Arc(_)
             | Curve::Polynomial(_)
@@ -91,11 +92,9 @@ impl Cursor<'_> {
             .step()
             .and_then(|located| located.step.cut())
             .is_some_and(|cut| matches!(cut.curve, Written::Lines(_)));
-        let Some(axis) = (0..MAX_AXES).find(|axis| missing[*axis] && !(is_line && from_nowhere(*axis)))
-        else {
-            return Ok(());
-        };
-        let name = self.decimals.program.axes.name(axis);
+        let brings = |axis: usize| is_line && from_nowhere && !self.decimals.unnamed[axis];
+        let Some(axis) = (0..count).find(|axis| missing[*axis] && !brings(*axis)) else { return Ok(()) };
+        let name = axes.name(axis);
         let message = format!("this path starts where no block before has brought {name}");
         let diagnostic = Diagnostic::refusal("start-unreached", message).hint(format!(
             "a move that names {name} has to stand before it, behind its retraction, the tool call or the change of the plane"

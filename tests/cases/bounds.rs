@@ -1,6 +1,11 @@
 //! The bound that is stated of lines, against the distance that is there: texts are read by a few words, and both paths looked at
 //! at many places, with no code of the project between.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "what is compared with the project's own must not come from there, and no text depends on it"
+)]
+
 use super::{case, compiled};
 use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};

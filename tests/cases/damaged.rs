@@ -4,6 +4,7 @@ use super::{compiled, proved};
 use crate::support::machine;
 use splinepost::diagnostic::Diagnostics;
 use splinepost::dialect::DIALECTS;
+use splinepost::source::SourceId;
 use splinepost::{Options, Output};
 
 /// A cutter of three flutes in two passes.
@@ -31,10 +32,10 @@ fn sections(text: &str) -> Vec<usize> {
 /// Whether the meaning and the form of a program are what would be written.
 fn verified(output: &Output, text: &str) -> Result<(), Diagnostics> {
     proved(output, text)?;
-    let read = (output.machine.dialect.read)(text, splinepost::source::SourceId::INPUT, &output.machine)?;
+    let read = (output.machine.dialect.read)(text, SourceId::INPUT, &output.machine)?;
     let legal = splinepost::pass::check::check(read.value.decimals, &output.machine)?;
     let written = (output.machine.dialect.write)(&legal.value, &output.machine);
-    splinepost::verify::same_form(text, &written, splinepost::source::SourceId::INPUT)
+    splinepost::verify::same_form(text, &written, SourceId::INPUT)
 }
 
 #[test]
