@@ -165,7 +165,9 @@ pub(super) const FAULTS: &[Fault] = &[
     (RETURN, &[Limit('X', [-1.5, 27.0, 999.0])], &[Speed]),
     (TIMED, &[Put("G93 X0.1987", 1, "X0.1987")], &[Feed]),
     (TIMED, &[Put("F1002.649", 1, "")], &[Feed]),
-    (TIMED, &[Put("G94 Z0. F200.", 2, "Z0. F200.")], &[Restart]),
+    // G94 stands behind the lines and before those of the next section: either is enough, and none is not.
+    (TIMED, &[Put("G94 Z0. F200.", 2, "Z0. F200.")], &[]),
+    (TIMED, &[Put("G0 G94 Z50.", 1, "G0 Z50."), Put("G94 Z0. F200.", 2, "Z0. F200.")], &[Restart]),
     (TIMED, &[Limit('A', [-1.0, 430.0, 1319.0])], &[]),
     (TIMED, &[Limit('A', [-1.0, 430.0, 1317.0])], &[Speed]),
     (NURBS, &[Before("G06.2", 1, "G93")], &[Header, Feed, Restart]),
