@@ -449,21 +449,45 @@ fn ordinates(first: f64, last: f64, rest: &[Decimal], length: f64) -> [f64; 6] {
     ordinates
 }
 
+/// The least weight that divides a control point without loss, as a share of the greatest.
+const LEAST_WEIGHT: f64 = 1.0e-3;
+
+/// Whether all weights are above zero, and none is next to it.
+fn sound(weights: &[f64]) -> bool {
+    let greatest = weights.iter().copied().fold(0.0, f64::max);
+    weights.iter().all(|w| LEAST_WEIGHT * greatest < *w)
+}
+
 impl PolynomialBlock {
+    /// Whether it moves nothing from `start`.
+    pub fn rests(&self, start: &Units) -> bool {
+        let zero = |coefficients: &[Decimal; COEFFICIENTS]| coefficients.iter().all(|a| a.is_zero());
+        self.end == *start && self.coefficients.iter().all(zero)
+    }
+
     /// The block as a Bezier piece from `start`.
     pub fn to_bezier(&self, digits: &[u8; MAX_AXES], start: &Units) -> Bezier {
         let used = |coefficients: &[Decimal; COEFFICIENTS]| {
             COEFFICIENTS - coefficients.iter().rev().take_while(|a| a.is_zero()).count()
         };
         let below = self.denominator.map_or(0, |denominator| used(&denominator.coefficients));
-        let count = self.coefficients.iter().map(used).max().unwrap_or(0).max(below);
-        let degree = 1 + count;
+        let mut count = self.coefficients.iter().map(used).max().unwrap_or(0).max(below);
         let length = self.pl.to_f64();
-        let mut piece = Bezier::new(&[[0.0; MAX_AXES]; 6][..=degree]);
+        let mut weights = [1.0; COEFFICIENTS + 2];
         if let Some(denominator) = &self.denominator {
             let end = denominator.end.to_f64();
-            piece.weights = ordinates(1.0, end, &denominator.coefficients[..count], length);
+            let of = |count| ordinates(1.0, end, &denominator.coefficients[..count], length);
+            weights = of(count);
+            // A denominator above zero can have a weight that is none, as 1, 0, 1 of half a circle. In a higher degree, which
+            // is the same polynomial, its weights come nearer to its values.
+            while count < COEFFICIENTS && !sound(&weights[..count + 2]) {
+                count += 1;
+                weights = of(count);
+            }
         }
+        let degree = 1 + count;
+        let mut piece = Bezier::new(&[[0.0; MAX_AXES]; 6][..=degree]);
+        piece.weights = weights;
         for axis in 0..MAX_AXES {
             let (first, last) =
                 (units_to_f64(start[axis], digits[axis]), units_to_f64(self.end[axis], digits[axis]));

@@ -123,6 +123,18 @@ impl From<Diagnostics> for Failure {
     }
 }
 
+/// What is refused of one motion and may not be of another, beside what the proof refuses.
+const OF_MOTION: [&str; 4] =
+    ["form-out-of-reach", "number-range", "position-range", "tolerance-out-of-reach"];
+
+impl Failure {
+    /// Whether another motion may come through: the program that was written is not proved, or its numbers do not go into
+    /// the control's.
+    fn is_of_motion(&self) -> bool {
+        self.program.is_some() || self.diagnostics.0.iter().all(|found| OF_MOTION.contains(&found.id))
+    }
+}
+
 /// Compiles an input for a machine, reads the program back and proves it.
 ///
 /// # Errors
@@ -155,15 +167,15 @@ fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Resul
     let intent = with_options(intent, options);
     let intent = pass::place::place(intent, machine)?;
     if !options.fit {
-        return compile_placed(intent, machine, options);
+        return compile_placed(&intent, machine, options);
     }
     // A spline may ask for what lines do not: accelerations inside blocks, axes that splines do not move, decimals. What goes
     // through as lines is no worse for having been asked as splines.
-    let refused = match compile_placed(intent.clone(), machine, options) {
+    let refused = match compile_placed(&intent, machine, options) {
         Ok(output) => return Ok(output),
         Err(refused) => refused,
     };
-    match compile_placed(intent, machine, &Options { fit: false, ..*options }) {
+    match compile_placed(&intent, machine, &Options { fit: false, ..*options }) {
         Ok(mut output) => {
             output.warnings.push(fit_refused(&refused.diagnostics));
             Ok(output)
@@ -172,7 +184,7 @@ fn compile_intent(intent: Intent, machine: &Machine, options: &Options) -> Resul
     }
 }
 
-fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
+fn compile_placed(intent: &Intent, machine: &Machine, options: &Options) -> Result<Output, Failure> {
     let machine = machine.with_axes(&intent.program.axes)?;
     if let Some(diagnostic) = pass::check::name(&intent.program.name, &machine) {
         let diagnostic = match intent.name_span {
@@ -181,50 +193,81 @@ fn compile_placed(intent: Intent, machine: &Machine, options: &Options) -> Resul
         };
         return Err(Diagnostics::from(diagnostic).into());
     }
-    length_within_decimals(&intent, &machine)?;
-    let tolerance = tolerance(&intent, &machine, options)?;
-    verify::contours(&intent, &machine, tolerance)?;
+    length_within_decimals(intent, &machine)?;
+    let tolerance = tolerance(intent, &machine, options)?;
+    verify::contours(intent, &machine, tolerance)?;
     let mut warnings = intent.warnings.clone();
     let asked = options.motion.or(machine.motion);
-    let motion = match asked {
-        Some(motion) => motion,
+    let motions = match asked {
+        Some(motion) => vec![motion],
         None => {
-            let fitted = options.fit.then(|| pass::fit::fit(&intent, &machine, fitting(tolerance, options)));
-            let chosen = pass::choose::choose(&intent, fitted.as_ref(), &machine, tolerance)?;
+            let fitted = options.fit.then(|| pass::fit::fit(intent, &machine, fitting(tolerance, options)));
+            let chosen = pass::choose::choose(intent, fitted.as_ref(), &machine, tolerance)?;
             warnings.extend(chosen.warnings);
-            chosen.value
+            let mut motions = chosen.value;
+            // Lines in place of a fit are another compilation, which says so.
+            if options.fit && motions.first().is_some_and(|best| best.form != Form::Lines) {
+                motions.retain(|motion| motion.form != Form::Lines);
+            }
+            motions
         }
     };
+    let mut refused: Vec<(&'static Motion, Failure)> = Vec::new();
+    for motion in motions {
+        match compile_as(intent.clone(), motion, &machine, tolerance, options) {
+            Ok(mut output) => {
+                for (other, failure) in &refused {
+                    warnings.push(passed_over(other, motion, failure));
+                }
+                warnings.extend(std::mem::take(&mut output.warnings));
+                return Ok(Output { warnings, ..output });
+            }
+            Err(failure) => {
+                let last = !failure.is_of_motion();
+                refused.push((motion, failure));
+                if last {
+                    break;
+                }
+            }
+        }
+    }
+    // Of several refusals the best motion's is told.
+    Err(refused.into_iter().next().map_or_else(|| Failure::from(Diagnostics::new()), |(_, failure)| failure))
+}
+
+/// Compiles a placed intent with one motion.
+fn compile_as(
+    intent: Intent,
+    motion: &'static Motion,
+    machine: &Machine,
+    tolerance: f64,
+    options: &Options,
+) -> Result<Output, Failure> {
+    let asked = options.motion.or(machine.motion);
     let intent = pass::settle::settle(intent, motion.form, asked.is_some(), tolerance)?;
-    warnings.extend(overrun_without_steps(&intent));
+    let mut warnings = overrun_without_steps(&intent);
     // Rounding costs something. What is left of the tolerance is for the fit; where the whole turns out too dear,
     // the fit is made finer. Lines are never refined: their points are asked for as they are.
-    let left = tolerance - resolution(&intent, &machine).min(0.5 * tolerance);
+    let left = tolerance - resolution(&intent, machine).min(0.5 * tolerance);
     let mut failure = Failure::from(Diagnostics::new());
     // An exact form that rounding spoils is given up only where no finer fit of the others helps.
     let exact = [1.0, 0.7, 0.4, 0.2, 0.05].map(|share| (share, true));
     let fitted = [1.0, 0.5, 0.1].map(|share| (share, false));
     for (share, exact) in exact.into_iter().chain(fitted) {
-        let attempt = Attempt {
-            motion,
-            machine: &machine,
-            tolerance,
-            fit: share * left,
-            exact,
-            asked: asked.is_some(),
-            options,
-        };
+        let attempt =
+            Attempt { motion, machine, tolerance, fit: share * left, exact, asked: asked.is_some(), options };
         match attempt.run(&intent) {
             Ok(Attempted { text, report, setup, warnings: found }) => {
                 warnings.extend(found);
-                warnings.extend(pass::stretch::varying(&intent, &machine));
-                warnings.extend(pass::approximate::notes(&intent, motion.form, &machine, !attempt.exact));
+                warnings.extend(pass::stretch::varying(&intent, machine));
+                warnings.extend(pass::approximate::notes(&intent, motion.form, machine, !attempt.exact));
                 if let Some(report) = &report {
                     if options.fit && report.splined.is_none() {
                         warnings.push(nothing_splined(motion));
                     }
                     warnings.extend(steps_exceed_tolerance(&intent, report, tolerance));
                 }
+                let machine = machine.clone();
                 return Ok(Output { text, report, motion, intent, tolerance, machine, setup, warnings });
             }
             Err(error) => {
@@ -297,6 +340,27 @@ impl Attempt<'_> {
                 Err(Failure { diagnostics, program: Some(Source::new("the program written", text)) })
             }
         }
+    }
+}
+
+/// What is said of a motion that would take fewer blocks and cannot be proved.
+fn passed_over(motion: &Motion, taken: &Motion, failure: &Failure) -> Diagnostic {
+    let reason = failure.diagnostics.0.first();
+    let message = format!(
+        "written as `{}`: as `{}` {}",
+        taken.name,
+        motion.name,
+        reason.map_or("", |reason| reason.message.as_str())
+    );
+    let note = Diagnostic::note("motion-passed-over", message);
+    // The program that failed is no text that anyone has; the entity of the input is.
+    let entity = reason.and_then(|reason| {
+        let spans = reason.span.into_iter().chain(reason.others().map(|(span, _)| *span));
+        spans.into_iter().find(|span| span.source != SourceId::PROGRAM)
+    });
+    match entity {
+        Some(span) => note.at(span, ""),
+        None => note,
     }
 }
 

@@ -6,13 +6,13 @@ use crate::dialect::Form;
 use crate::dialect::parts::Assigned;
 use crate::geom::direction;
 use crate::geom::rotation::Rotation;
-use crate::ir::{Auxiliary, Curve, Decimals, Intent, Role, Step, Units, Written};
+use crate::ir::{Auxiliary, Decimals, Intent, Role, Step, Units, Written};
 use crate::machine::remark::{taken, wrapped};
 use crate::machine::{Machine, Moves, PlaneApproach, RotaryFeed, Turn};
 use crate::pass::check::moving;
-use crate::pass::stretch::linear_length;
+use crate::pass::stretch::amount;
 use crate::pass::{limits, range};
-use crate::units::{Axes, DEGREES, Kind, Position};
+use crate::units::{DEGREES, Kind};
 use serde::Serialize;
 
 /// The figures of a program on one machine.
@@ -55,8 +55,9 @@ pub struct AxisFigures {
     pub unit: &'static str,
     /// Its least and greatest position as the text counts it, mm or degrees; none where it does not move.
     pub range: Option<[f64; 2]>,
-    /// Its greatest speed at feed, mm/min or degrees/min.
-    pub speed: f64,
+    /// Its greatest speed at feed, mm/min or degrees/min; none where it moves while all axes that F counts stand, which
+    /// bounds nothing.
+    pub speed: Option<f64>,
     /// Whether it moves the work and not the wheel.
     pub moves_work: bool,
 }
@@ -96,7 +97,9 @@ impl Setup {
         let mut home: Vec<String> = home.collect();
         home.dedup();
         let paths = steps().filter_map(|step| step.cut()).filter(|cut| cut.role == Role::Path);
-        let minutes: Vec<f64> = paths.filter_map(|cut| Some(amount(&cut.curve, &axes) / cut.feed?)).collect();
+        let radius = intent.radius();
+        let minutes: Vec<f64> =
+            paths.filter_map(|cut| Some(amount(&cut.curve, &axes, machine, radius) / cut.feed?)).collect();
         let range = minutes.iter().fold(None, |range: Option<[f64; 2]>, m| {
             Some(range.map_or([*m, *m], |[least, most]| [least.min(*m), most.max(*m)]))
         });
@@ -172,8 +175,11 @@ impl Setup {
         let speeds: Vec<String> = self
             .axes
             .iter()
-            .filter(|figures| 0.0 < figures.speed)
-            .map(|figures| format!("{} {}", figures.axis, short(figures.speed, 0)))
+            .filter(|figures| figures.speed != Some(0.0))
+            .map(|figures| match figures.speed {
+                Some(speed) => format!("{} {}", figures.axis, short(speed, 0)),
+                None => format!("{} AS FAST AS IT CAN", figures.axis),
+            })
             .collect();
         if !speeds.is_empty() {
             lines.push(format!("FASTEST AT FEED, MM OR DEGREES A MINUTE: {}", speeds.join(", ")));
@@ -198,26 +204,6 @@ impl Setup {
         }
         lines.push(format!("{LAST_REMARK} {}", self.not_covered.join(", ").to_uppercase()));
         lines
-    }
-}
-
-/// How much of what its feed is a speed of passes along a curve, mm or degrees.
-fn amount(curve: &Curve, axes: &Axes) -> f64 {
-    match curve {
-        Curve::Logarithmic(log) => log.curve.amount(log.along),
-        Curve::Arc(arc) => arc.length(),
-        Curve::Lines(line) | Curve::Through(_, line) => {
-            let linear: Vec<usize> = (0..axes.count()).filter(|i| axes.kind(*i) == Kind::Linear).collect();
-            let mut from = line.start;
-            let way = |to: Position| {
-                let from = std::mem::replace(&mut from, to);
-                linear.iter().map(|i| (to[*i] - from[*i]) * (to[*i] - from[*i])).sum::<f64>().sqrt()
-            };
-            line.points().map(way).sum()
-        }
-        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Formula(_) => {
-            curve.pieces().iter().map(|piece| linear_length(piece, axes)).sum()
-        }
     }
 }
 

@@ -208,12 +208,13 @@ impl Summary {
         }
         for figures in &self.setup.axes {
             let Some([low, high]) = figures.range else { continue };
-            let (axis, unit, speed) = (&figures.axis, figures.unit, figures.speed);
+            let (axis, unit) = (&figures.axis, figures.unit);
+            let speed = match figures.speed {
+                Some(speed) => format!("at most {speed:.0} {unit}/min at feed"),
+                None => "at feed as fast as it can, since it moves where the others stand".to_owned(),
+            };
             let work = if figures.moves_work { ", moves the work" } else { "" };
-            let _ = writeln!(
-                text,
-                "  {axis:<10} {low:.3} to {high:.3} {unit}, at most {speed:.0} {unit}/min at feed{work}"
-            );
+            let _ = writeln!(text, "  {axis:<10} {low:.3} to {high:.3} {unit}, {speed}{work}");
         }
         if let Some([least, most]) = self.setup.tilt {
             let _ = writeln!(text, "  tool axis  {least:.3} to {most:.3} degrees from Z");

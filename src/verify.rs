@@ -46,7 +46,7 @@ use crate::ir::{
     Curve, Cut, Decimals, Intent, Located, Logarithmic, Role, Shift, Step, Units, Written, WrittenPoints,
 };
 use crate::machine::Machine;
-use crate::pass::stretch::of_curve;
+use crate::pass::stretch::{amount, of_curve};
 use crate::setup::Setup;
 use crate::source::{SourceId, Span};
 use crate::units::{Axes, DEGREES, MAX_AXES, Position};
@@ -182,7 +182,9 @@ pub fn verify(
                 let (at, within) = (cursor.at, cursor.within);
                 let gap = std::mem::take(&mut cursor.gap);
                 cursor.begins_where_the_tool_is(curve)?;
-                let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
+                let mut found = cursor
+                    .cut(curve, (*feed, *role), tolerance, &mut ideal)
+                    .map_err(|refused| of_entity(refused, located.span))?;
                 // The path before ends that far from where this one starts; a turn takes it along.
                 found.deviation.mm += gap;
                 if let Curve::Arc(_) = curve {
@@ -194,10 +196,11 @@ pub fn verify(
                 if let Some(diagnostic) = too_far(found.deviation, tolerance, machine, &intent.program.axes) {
                     // Looked up only now: finding a line reads the text.
                     (cursor.at, cursor.within) = (at, within);
-                    return Err(match cursor.step() {
-                        Some(step) => diagnostic.at(cursor.place(step), "").into(),
-                        None => diagnostic.into(),
-                    });
+                    let diagnostic = match cursor.step() {
+                        Some(step) => diagnostic.at(cursor.place(step), ""),
+                        None => diagnostic,
+                    };
+                    return Err(of_entity(diagnostic.into(), located.span));
                 }
                 report.deviation = report.deviation.max(found.deviation);
                 if let Some(run) = found.splined {
@@ -239,6 +242,15 @@ pub fn verify(
         return Err(Diagnostic::refusal("setup-differs", message).at(place, "").into());
     }
     Ok(report)
+}
+
+/// What is wrong with the path of one entity of the input, which is shown too.
+fn of_entity(mut refused: Diagnostics, entity: Span) -> Diagnostics {
+    for diagnostic in &mut refused.0 {
+        let others = &mut diagnostic.others.get_or_insert_default().0;
+        others.push((entity, "requested here".to_owned()));
+    }
+    refused
 }
 
 /// What is said of a path that is too far from what was asked, in places or in the tool's direction.
@@ -433,8 +445,9 @@ impl<'p> Cursor<'p> {
         if !matches!(curve, Curve::Logarithmic(_)) {
             self.same_feed(cut.feed, asked)?;
         }
+        let (machine, radius) = (self.machine, self.radius);
         let timed = |found: Found| match feed {
-            Some(feed) => Found { minutes: found.cutting_length / feed, ..found },
+            Some(feed) => Found { minutes: amount(curve, &axes, machine, radius) / feed, ..found },
             None => found,
         };
         match (curve, &cut.curve) {

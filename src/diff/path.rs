@@ -16,7 +16,7 @@ use crate::geom::deviation::{Bound, Metric};
 use crate::geom::direction;
 use crate::geom::follow::{Meeting, Rule, Stream};
 use crate::machine::{RotaryFeed, Turn};
-use crate::pass::stretch::{counted_length, linear_length};
+use crate::pass::stretch::{counted_length, linear_length, rotary_length};
 use crate::source::Span;
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 use crate::verify::Status;
@@ -126,20 +126,14 @@ impl<'s, 'a> Run<'s, 'a> {
     /// The length of a piece as F counts it.
     fn counted(&self, piece: &Bezier, radius: f64) -> f64 {
         let axes = &self.side.axes;
-        let length = match self.side.machine.filter(|_| self.side.digits.is_some()) {
+        match self.side.machine.filter(|_| self.side.digits.is_some()) {
             Some(machine) => counted_length(piece, axes, machine, radius),
-            None => linear_length(piece, axes),
-        };
-        if 0.0 < length {
-            return length;
+            None => match linear_length(piece, axes) {
+                // Nothing but rotary axes moves: F is theirs.
+                0.0 => rotary_length(piece, axes),
+                linear => linear,
+            },
         }
-        // Nothing but rotary axes moves: F is theirs.
-        let (from, to) = (piece.start(), piece.end());
-        (0..axes.count())
-            .filter(|i| axes.kind(*i) == Kind::Rotary)
-            .map(|i| (to[i] - from[i]) * (to[i] - from[i]))
-            .sum::<f64>()
-            .sqrt()
     }
 
     /// How F counts rotary axes; an input asks for a speed along the linear ones.

@@ -80,6 +80,25 @@ impl Bernstein {
         self.c[self.degree]
     }
 
+    /// f/t, or f/(1 − t), where that is a polynomial: f(0), or f(1), is 0, and n is not.
+    ///
+    /// ```text
+    /// f/t: n/(i+1) c_{i+1}          f/(1 − t): n/(n−i) c_i
+    /// ```
+    #[must_use]
+    pub fn without_root(&self, at_end: bool) -> Bernstein {
+        let n = self.degree;
+        let mut result = Bernstein { degree: n - 1, c: [0.0; MAX_DEGREE + 1] };
+        for i in 0..n {
+            result.c[i] = if at_end {
+                n as f64 / (n - i) as f64 * self.c[i]
+            } else {
+                n as f64 / (i + 1) as f64 * self.c[i + 1]
+            };
+        }
+        result
+    }
+
     /// f′, of degree n − 1 (a constant stays a constant zero): n (c_{i+1} − c_i).
     #[must_use]
     pub fn derivative(&self) -> Bernstein {

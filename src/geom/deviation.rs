@@ -135,14 +135,20 @@ impl Span {
     }
 }
 
-/// The bound for a piece in X Y Z (mm) and A (degrees) at equal X.
+/// The bound for a piece in X Y Z (mm) and A (degrees) against the curve at X + s, s going evenly from the one to the other
+/// of `ahead`, mm. With 0 and 0 that is at equal X.
 ///
 /// # Errors
 /// The piece runs back in X, or leaves the cutter.
-pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> {
+pub fn log_piece(curve: &LogCurve, piece: &Bezier, ahead: [f64; 2]) -> Result<Bound, OrderError> {
     let (k, beta) = (curve.k(), curve.beta());
-    let x = piece.numerator(0);
     let d = if piece.is_polynomial() { Bernstein::new(&[piece.weights[0]]) } else { piece.denominator() };
+    // X + s, times the weight.
+    let x = match ahead {
+        [0.0, 0.0] => piece.numerator(0),
+        _ => piece.numerator(0).combined(1.0, &Bernstein::new(&ahead).times(&d), 1.0),
+    };
+    let apart = ahead[0].abs().max(ahead[1].abs());
     // (A_deg − index) in radians, times the weight.
     let mut angle = *piece;
     for point in &mut angle.points {
@@ -204,9 +210,10 @@ pub fn log_piece(curve: &LogCurve, piece: &Bezier) -> Result<Bound, OrderError> 
             let x_least = if x_min <= 0.0 { x_min / d_min } else { x_min / d_max };
             let radius = curve.metric_radius(x_most).max(curve.metric_radius(x_least));
             let (dy, dz) = ((span.y.max_abs() + y_noise) / d_min, (span.z.max_abs() + z_noise) / d_min);
-            let mm = (rad * radius * rad * radius + dy * dy + dz * dz).sqrt();
+            let along = apart * apart + dy * dy + dz * dz;
+            let mm = (rad * radius * rad * radius + along).sqrt();
             seen = seen.max(first.1).max(last.1);
-            let tight = mm <= 1.02 * (seen * seen + dy * dy + dz * dz).sqrt() + 1.0e-9;
+            let tight = mm <= 1.02 * (seen * seen + along).sqrt() + 1.0e-9;
             let in_order = backward_noise <= span.forward.min();
             if (tight && in_order) || settled {
                 if !in_order {
@@ -384,7 +391,7 @@ mod tests {
             };
             let mut piece = Bezier::new(&[at(0.0, 0.0), at(0.33, 0.01), at(0.67, -0.2), at(1.0, 0.003)]);
             piece.weights[..4].copy_from_slice(&weights);
-            let bound = log_piece(&curve, &piece).unwrap();
+            let bound = log_piece(&curve, &piece, [0.0; 2]).unwrap();
             let seen = sampled(&curve, &piece);
             assert!(seen <= bound.mm && bound.mm <= 1.05 * seen + 1e-8, "{seen} {bound:?}");
         }
@@ -410,7 +417,7 @@ mod tests {
             curve.position(30.0),
         ]);
         // X′ ∝ 30, −35, 35 in Bernstein form: 30 − 130t + 135t² is −1.3 at t = 0.48.
-        assert_eq!(log_piece(&curve, &piece), Err(OrderError::RunsBack));
+        assert_eq!(log_piece(&curve, &piece, [0.0; 2]), Err(OrderError::RunsBack));
         let metric = Metric::new(&[Kind::Linear], 1.0);
         let line = Bezier::line(curve.position(30.0), curve.position(0.0));
         let ends = (&curve.position(0.0), &curve.position(30.0));
@@ -440,7 +447,7 @@ mod tests {
         let curve = LogCurve::new(paper(), 0.0).unwrap();
         let mut piece = Bezier::line(curve.position(0.0), curve.position(30.0));
         piece.points[1][3] = f64::NAN;
-        assert_eq!(log_piece(&curve, &piece), Err(OrderError::NotFinite));
+        assert_eq!(log_piece(&curve, &piece, [0.0; 2]), Err(OrderError::NotFinite));
         let metric = Metric::new(&[Kind::Linear; 4], 1.0);
         let ends = (&curve.position(0.0), &curve.position(30.0));
         let result = segment_piece(&metric, ends, &piece, 1e-9, &mut reached_nothing());

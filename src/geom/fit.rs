@@ -84,7 +84,7 @@ fn fewest(
 ) -> Result<Vec<Bezier>, FitError> {
     fewest_pieces(curve, tolerance, order, |x0, x1| {
         let piece = piece(x0, x1);
-        log_piece(curve, &piece).ok().map(|bound| (bound, piece))
+        log_piece(curve, &piece, [0.0; 2]).ok().map(|bound| (bound, piece))
     })
 }
 
@@ -227,7 +227,7 @@ fn cubic(curve: &LogCurve, x0: f64, x1: f64) -> Bezier {
     }
     let fitted = piece(curve, &ordinates(u, v));
     let plain = hermite(curve, x0, x1);
-    let mm = |piece: &Bezier| log_piece(curve, piece).map_or(f64::INFINITY, |bound| bound.mm);
+    let mm = |piece: &Bezier| log_piece(curve, piece, [0.0; 2]).map_or(f64::INFINITY, |bound| bound.mm);
     if mm(&plain) <= mm(&fitted) { plain } else { fitted }
 }
 
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     fn worst(curve: &LogCurve, pieces: &[Bezier]) -> f64 {
-        pieces.iter().map(|piece| log_piece(curve, piece).unwrap().mm).fold(0.0, f64::max)
+        pieces.iter().map(|piece| log_piece(curve, piece, [0.0; 2]).unwrap().mm).fold(0.0, f64::max)
     }
 
     #[test]

@@ -129,6 +129,7 @@ pub fn follow_turning(
     if path.is_empty() || curve.is_empty() || !path.iter().chain(curve).all(finite) {
         return Err(OrderError::NotFinite);
     }
+    let (path, curve) = (&*moving(path), &*moving(curve));
     if path.len() == curve.len() {
         let mut bounds = Bounds::new(path, curve, direction, tolerance);
         if path.iter().zip(curve).all(|(p, c)| at_equal_parameters(p, c, &mut bounds)) {
@@ -180,6 +181,15 @@ fn at_equal_parameters(p: &Bezier, c: &Bezier, bounds: &mut Bounds) -> bool {
         stack.push((p.segment(0.0, 0.5), c.segment(0.0, 0.5), depth + 1));
     }
     true
+}
+
+/// The pieces that move; all where none does. One that stands where it is takes no part in a path.
+fn moving(pieces: &[Bezier]) -> Cow<'_, [Bezier]> {
+    let moves = |piece: &Bezier| piece.control_points().iter().any(|point| *point != piece.points[0]);
+    if pieces.iter().all(moves) || !pieces.iter().any(moves) {
+        return Cow::Borrowed(pieces);
+    }
+    Cow::Owned(pieces.iter().copied().filter(moves).collect())
 }
 
 /// The greatest ratio of two weights of a piece that is run along as it is.
@@ -423,8 +433,16 @@ fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
     while let Some((p, c, depth)) = stack.pop() {
         bounds.look(&p, &c);
         let phi = rising(&p, &c, bounds.direction.is_some());
-        let (most, axes) = difference(bounds, &p, &c, &phi);
+        let (mut most, mut axes) = difference(bounds, &p, &c, &phi);
         let turn = bounds.turn(&p, &c, &phi);
+        // Where c stands at an end nearest places have no slope there.
+        if bounds.direction.is_none()
+            && stands(&c)
+            && let Some(other) = projected(bounds, &p, &c)
+            && other.0 < most
+        {
+            (most, axes) = other;
+        }
         if bounds.is_tight(most, turn) || depth == MAX_DEPTH || bounds.left == 0 {
             bounds.take(most, &axes, turn);
             continue;
@@ -434,6 +452,44 @@ fn interval(p: &Bezier, c: &Bezier, bounds: &mut Bounds) {
         stack.push((p.segment(0.5, 1.0), c.segment(u, 1.0), depth + 1));
         stack.push((p.segment(0.0, 0.5), c.segment(0.0, u), depth + 1));
     }
+}
+
+/// Whether a piece stands at its start or end: two control points there are one, to rounding.
+fn stands(piece: &Bezier) -> bool {
+    let (points, m) = (piece.control_points(), piece.degree);
+    let whole = distance(&points[0], &points[m]);
+    1 < m && distance(&points[0], &points[1]).min(distance(&points[m - 1], &points[m])) <= 1.0e-9 * whole
+}
+
+/// The bound for a straight p against c where φ is the inverse of c's projection onto p, in all and in each coordinate; none
+/// where that does not rise. It does where that of the control points does, and by the convex hull no point of c is farther
+/// from its foot than a control point from its own. Where the first foot is not p's start c waits while p comes there, and
+/// at the end likewise.
+fn projected(bounds: &Bounds, p: &Bezier, c: &Bezier) -> Option<(f64, [f64; MAX_AXES])> {
+    let (from, to) = (p.start(), p.end());
+    let way = minus(&to, &from);
+    let square = dot(&way, &way);
+    if p.degree != 1 || !p.is_polynomial() || !(0.0 < square) {
+        return None;
+    }
+    let (mut most, mut axes, mut reached) = (0.0f64, [0.0f64; MAX_AXES], 0.0f64);
+    let mut meet = |point: &Position, foot: &Position| {
+        most = most.max(distance(point, foot));
+        for (axis, (p, q)) in axes.iter_mut().zip(point.iter().zip(foot)) {
+            *axis = axis.max((p - q).abs());
+        }
+    };
+    for point in c.control_points() {
+        let s = (dot(&minus(point, &from), &way) / square).clamp(0.0, 1.0);
+        if s < reached {
+            return None;
+        }
+        reached = s;
+        meet(point, &std::array::from_fn(|i| from[i] + s * way[i]));
+    }
+    meet(&c.start(), &from);
+    meet(&c.end(), &to);
+    Some((most + bounds.noise, axes.map(|axis| axis + bounds.noise)))
 }
 
 /// One of the two paths, and where it has been run to.

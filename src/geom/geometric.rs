@@ -86,11 +86,23 @@ pub fn cubics(chain: &Chain, tolerance: f64) -> Result<Vec<Bezier>, FitError> {
 /// # Errors
 /// The tolerance is out of reach.
 pub fn chords(chain: &Chain, tolerance: f64) -> Result<Vec<Position>, FitError> {
+    chords_with(chain, tolerance, |_| 0.0)
+}
+
+/// The same where a control leaves a chord by so many mm `more`.
+///
+/// # Errors
+/// As above.
+pub fn chords_with(
+    chain: &Chain,
+    tolerance: f64,
+    more: impl Fn(&Bezier) -> f64,
+) -> Result<Vec<Position>, FitError> {
     let chord = |from: f64, to: f64| {
         let line = Bezier::line(chain.eval(from), chain.eval(to));
         let window = Window::new(chain, from, to);
         // The curve's own places are measured too: a chord may pass by a bulge that it does not point at.
-        (window.off_line(&line), line)
+        (window.off_line(&line) + more(&line), line)
     };
     let mut points = Vec::new();
     let mut from = 0.0;

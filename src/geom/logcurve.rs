@@ -269,6 +269,20 @@ impl LogCurve {
         self.position_with(x, self.angle(x))
     }
 
+    /// X of about the nearest place of the curve to a position, between start and end. With e the error in A at equal X and
+    /// m = dA/dX, a step s along the tangent leaves c² s² + R² (e − m s)², which is least at
+    ///
+    /// ```text
+    /// s = R² m e / (c² + R² m²)
+    /// ```
+    pub fn nearest_x(&self, p: &Position) -> f64 {
+        let x = p[0].clamp(self.start(), self.end());
+        let e = (p[3] - self.index) / DEGREES - self.angle(x);
+        let (c, turn) = (self.length_per_x(), self.metric_radius(x) * self.slope(x));
+        let s = self.metric_radius(x) * turn * e / (c * c + turn * turn);
+        (x + s).clamp(self.start(), self.end())
+    }
+
     /// Path of X Y Z per mm of X.
     pub fn length_per_x(&self) -> f64 {
         (1.0 + self.tan_c * self.tan_c + self.z_slope * self.z_slope).sqrt()

@@ -37,6 +37,7 @@ pub mod fit;
 pub mod follow;
 pub mod geometric;
 pub mod knots;
+pub mod length;
 pub mod logcurve;
 pub mod nurbs;
 pub mod oddeven;

@@ -20,7 +20,7 @@ use crate::geom::direction;
 use crate::geom::fit::FitError;
 use crate::geom::geometric;
 use crate::ir::{Curve, Cut, Intent, Polyline, Role, Step};
-use crate::machine::Machine;
+use crate::machine::{Machine, Turn};
 use crate::units::{Axes, DEGREES, Kind, Position};
 
 /// Where a curve is.
@@ -168,7 +168,16 @@ pub fn approximate(
         }
         return Ok(Curve::Polynomial(direction::scaled(&cubics, first.filter(|_| turns), length)));
     }
-    let chords = geometric::chords(&chain, tolerance).map_err(out_of_reach)?;
+    // Where the rotary axes go evenly they leave the plane between two directions, next to Z by most: lines are shorter there.
+    let tilts = frame.machine.orientation.turn == Turn::Tilt;
+    let departure = |line: &Bezier| match first.filter(|_| tilts) {
+        Some(first) => {
+            let of = |place: &Position| [place[first], place[first + 1], place[first + 2]];
+            metric.reach() * direction::tilt_departure(&of(&line.start()), &of(&line.end()))
+        }
+        None => 0.0,
+    };
+    let chords = geometric::chords_with(&chain, tolerance, departure).map_err(out_of_reach)?;
     let place = |point: &Position| {
         let place = metric.unscaled(&Bezier::line(*point, *point)).start();
         first.map_or(place, |first| direction::unit(&place, first))

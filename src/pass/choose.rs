@@ -1,5 +1,5 @@
-//! One motion for a program, where `auto` leaves it open: the one with the fewest blocks that this machine takes and
-//! whose path can be proved. At equal numbers the dialect's own order decides; through-point motions are never chosen,
+//! Motions for a program, where `auto` leaves it open, the best first: the one with the fewest blocks that this machine
+//! takes. Where its path cannot be proved the next is tried. At equal numbers the dialect's own order decides; through-point motions are never chosen,
 //! since only the control knows their shape, and a path that is made of lines anyway is written as lines: a straight
 //! one, and odd-even steps where the input asks for them.
 
@@ -10,7 +10,7 @@ use crate::ir::{Curve, Cut, Described, Intent, Method, Passed, Role};
 use crate::machine::{Machine, RotaryFeed};
 use crate::units::Axis;
 
-/// The motion for an intent. `fitted` is what splines are made of where runs of lines are to become some.
+/// The motions for an intent, the best first. `fitted` is what splines are made of where runs of lines are to become some.
 ///
 /// # Errors
 /// No motion of the machine can hold the tolerance.
@@ -19,14 +19,14 @@ pub fn choose(
     fitted: Option<&Intent>,
     machine: &Machine,
     tolerance: f64,
-) -> Result<Warned<&'static Motion>, Diagnostics> {
+) -> Result<Warned<Vec<&'static Motion>>, Diagnostics> {
     let mut warnings = Diagnostics::new();
     let source = fitted.unwrap_or(intent);
     // Where nothing is left to choose, a million points are not counted.
     if paths(source).next().is_none()
         && let Some(motion) = machine.dialect.motion_of(Form::Lines)
     {
-        return Ok(Warned { value: motion, warnings });
+        return Ok(Warned { value: vec![motion], warnings });
     }
     let blocked = machine.axes_without_spline(&moving_axes(source));
     let straight = paths(source).all(|curve| match curve {
@@ -39,7 +39,7 @@ pub fn choose(
     let timed = turns && machine.rotary_feed == RotaryFeed::InverseTime;
     // What splines do while the tip is led only second curves say.
     let led = intent.program.axes.direction().is_some() && !machine.orientation.second_curve;
-    let mut best: Option<(usize, &'static Motion)> = None;
+    let mut found: Vec<(usize, &'static Motion)> = Vec::new();
     let mut errors = Diagnostics::new();
     for motion in machine.dialect.motions {
         let allowed = match motion.form {
@@ -54,12 +54,15 @@ pub fn choose(
         }
         let of = if motion.form == Form::Lines { intent } else { source };
         match blocks(of, motion.form, machine, tolerance) {
-            Ok(n) if best.is_none_or(|(fewest, _)| n < fewest) => best = Some((n, motion)),
-            Ok(_) => {}
+            Ok(n) => found.push((n, motion)),
             Err(error) => errors.extend(error),
         }
     }
-    let Some((_, motion)) = best else { return Err(errors) };
+    if found.is_empty() {
+        return Err(errors);
+    }
+    // Stable: the dialect's order stays among equals.
+    found.sort_by_key(|(count, _)| *count);
     if let Some(axis) = winds.filter(|_| !straight && blocked.is_empty()) {
         let message = format!(
             "written as lines: {axis} turns by more than 360 degrees, and on machine `{}` it wraps there",
@@ -91,7 +94,7 @@ pub fn choose(
             )),
         );
     }
-    Ok(Warned { value: motion, warnings })
+    Ok(Warned { value: found.into_iter().map(|(_, motion)| motion).collect(), warnings })
 }
 
 fn paths(intent: &Intent) -> impl Iterator<Item = &Curve> {

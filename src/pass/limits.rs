@@ -7,7 +7,7 @@
 //! v_i = F x_i′/L′          a_i = F² (x_i″ L′² − x_i′ ΣX′X″)/L′⁴
 //! ```
 //!
-//! Pieces are halved until each part is a 32nd; there the derivatives are bounded from above and L′ from below by
+//! Pieces are halved until each part is a 32nd, and on where that says too little; there the derivatives are bounded from above and L′ from below by
 //! Bernstein coefficients, so that no figure is too low. Where F counts mm at the surface, the rotary axis' share of L′ is
 //! left out, and the figures are too high rather than too low. Starts, stops and corners are not in it.
 
@@ -62,6 +62,14 @@ pub(super) fn check(decimals: &Decimals, machine: &Machine) -> Diagnostics {
                 Kind::Linear | Kind::Direction => String::new(),
                 Kind::Rotary => format!(" ({:.1} rev/min)", most.amount / 360.0),
             };
+            if most.amount == f64::INFINITY {
+                let message = format!(
+                    "{name} would have to move while all axes that F counts stand, {} {allowed} {unit}/min",
+                    place(&most)
+                );
+                found.push(Diagnostic::refusal("axis-speed", message).at(most.span, ""));
+                continue;
+            }
             let message = format!(
                 "{name} would have to move at {:.0} {unit}/min{turns} {} {allowed}",
                 most.amount,
@@ -78,6 +86,14 @@ pub(super) fn check(decimals: &Decimals, machine: &Machine) -> Diagnostics {
         if let (Some(most), Some(allowed)) = (accelerations[axis], limits(axis).max_acceleration)
             && allowed < most.amount
         {
+            if most.amount == f64::INFINITY {
+                let message = format!(
+                    "{name} would have to turn a corner inside a block at F, {} {allowed} {unit}/s²",
+                    place(&most)
+                );
+                found.push(Diagnostic::refusal("axis-acceleration", message).at(most.span, ""));
+                continue;
+            }
             let message = format!(
                 "{name} would have to speed up by {:.1} {unit}/s² inside a block {} {allowed}",
                 most.amount,
@@ -95,10 +111,12 @@ pub(super) fn check(decimals: &Decimals, machine: &Machine) -> Diagnostics {
     found
 }
 
-/// The greatest speed of each axis at feed, mm/min or degrees/min.
-pub fn greatest_speeds(decimals: &Decimals, machine: &Machine) -> [f64; MAX_AXES] {
+/// The greatest speed of each axis at feed, mm/min or degrees/min; none where nothing bounds it, since it moves where all axes
+/// that F counts stand.
+pub fn greatest_speeds(decimals: &Decimals, machine: &Machine) -> [Option<f64>; MAX_AXES] {
     let all: Vec<usize> = (0..decimals.program.axes.count()).collect();
-    figures(decimals, machine, &all).0.map(|most| most.map_or(0.0, |most| most.amount))
+    let amount = |most: Option<Most>| most.map_or(0.0, |most| most.amount);
+    figures(decimals, machine, &all).0.map(|most| Some(amount(most)).filter(|speed| speed.is_finite()))
 }
 
 /// The greatest speeds and accelerations of some axes.
@@ -249,21 +267,36 @@ pub(super) fn each_piece(decimals: &Decimals, curve: &Written, mut visit: impl F
     }
 }
 
-/// The derivatives of a piece on one interval of t.
+/// The derivatives of a piece on one interval of t: u = N′D − ND′, and u′.
 #[derive(Clone)]
 struct Derivatives {
     own: Bernstein,
     own_second: Bernstein,
     /// Of each axis that F counts, the first and the second.
     path: Vec<(Bernstein, Bernstein)>,
+    /// D, what u was divided by, and so on: what divides L′.
+    below: Bernstein,
     t: f64,
     level: u32,
 }
+
+/// Halving stops here.
+const DEEPEST: u32 = 30;
+
+/// And here: each further part is taken as it is.
+const MOST_PARTS: u32 = 512;
+
+/// A part is halved beyond [`HALVINGS`] where its bound is above what was seen of the piece by more than this factor.
+const LOOSE: f64 = 1.25;
+
+/// A share of F that is not worth a closer look.
+const LITTLE: f64 = 0.01;
 
 impl Derivatives {
     fn halves(&self) -> [Derivatives; 2] {
         let (own, second) = (self.own.halves(), self.own_second.halves());
         let path: Vec<_> = self.path.iter().map(|(x, y)| (x.halves(), y.halves())).collect();
+        let below = self.below.halves();
         let level = self.level + 1;
         let width = 1.0 / f64::from(1u32 << level);
         [
@@ -271,6 +304,7 @@ impl Derivatives {
                 own: own.0,
                 own_second: second.0,
                 path: path.iter().map(|(x, y)| (x.0, y.0)).collect(),
+                below: below.0,
                 t: self.t,
                 level,
             },
@@ -278,43 +312,131 @@ impl Derivatives {
                 own: own.1,
                 own_second: second.1,
                 path: path.iter().map(|(x, y)| (x.1, y.1)).collect(),
+                below: below.1,
                 t: self.t + width,
                 level,
             },
         ]
     }
+
+    /// Upper bounds of speed and acceleration on the part, F being 1 mm/s; infinite where nothing bounds them.
+    fn bounds(&self) -> (f64, f64) {
+        let least = |x: &Bernstein| x.min().max(-x.max()).max(0.0);
+        let square = self.path.iter().map(|(x, _)| least(x) * least(x)).sum::<f64>();
+        let across = self.path.iter().map(|(x, y)| x.max_abs() * y.max_abs()).sum::<f64>();
+        let own = self.own.max_abs();
+        let below = self.below.max_abs();
+        let second = below * below * (self.own_second.max_abs() + own * across / square) / square;
+        (own / square.sqrt(), second)
+    }
+
+    /// The speed at the start of the part, F being 1; 0 where it is not known.
+    fn seen(&self) -> f64 {
+        let square = self.path.iter().map(|(x, _)| x.start() * x.start()).sum::<f64>();
+        let speed = self.own.start().abs() / square.sqrt();
+        if speed.is_finite() { speed } else { 0.0 }
+    }
 }
 
-/// Upper bounds of an axis' speed (a minute) and acceleration (a second squared) on a polynomial piece, and t where
-/// the part begins in which each is reached. A block that moves no axis that F counts runs at F in the others.
+/// Whether all control points lie on one line, in the axes given: then the axes keep their speed at F.
+fn is_straight(piece: &Bezier, axes: &[usize]) -> bool {
+    let points = piece.control_points();
+    let way = |p: &Position| -> Vec<f64> { axes.iter().map(|i| p[*i] - points[0][*i]).collect() };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let ways: Vec<Vec<f64>> = points.iter().map(way).collect();
+    let longest = ways.iter().max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+    let Some(longest) = longest else { return true };
+    let size = dot(longest, longest);
+    // To rounding: a part in 10¹² of the longest way.
+    ways.iter().all(|way| {
+        let share = dot(way, longest) / size;
+        let off: f64 = way.iter().zip(longest).map(|(x, l)| (x - share * l) * (x - share * l)).sum();
+        off <= 1.0e-24 * size
+    })
+}
+
+/// Upper bounds of an axis' speed (a minute) and acceleration (a second squared) on a piece, and t where the part begins in
+/// which each is reached. A block that moves no axis that F counts runs at F in the others. With D the denominator and
+/// u = N′D − ND′ of each axis, x′ = u/D²:
+///
+/// ```text
+/// v_i = F u_i/|u|          a_i = F² D² (u_i′ − u_i u·u′/u²)/u²
+/// ```
+///
+/// Where the piece stands at its start or end, t or 1 − t divides every u there, and is left out of v. An axis that F counts
+/// is never faster than F. Infinite is what nothing bounds: another axis that moves where those stand.
 fn of_piece(counts: &[usize], piece: &Bezier, axis: usize, feed: f64) -> ((f64, f64), (f64, f64)) {
-    let derivatives = |i: usize| {
-        let first = piece.numerator(i).derivative();
-        (first, first.derivative())
+    let mut piece = *piece;
+    let greatest = piece.weights[..=piece.degree].iter().copied().fold(0.0, f64::max);
+    piece.weights.iter_mut().for_each(|w| *w /= greatest);
+    let d = piece.denominator();
+    let polynomial = piece.is_polynomial();
+    let derivative = |i: usize| {
+        let n = piece.numerator(i);
+        if polynomial {
+            return n.derivative();
+        }
+        n.derivative().times(&d).combined(1.0, &n.times(&d.derivative()), -1.0)
     };
-    let path: Vec<(Bernstein, Bernstein)> = counts.iter().map(|i| derivatives(*i)).collect();
-    let (own, own_second) = derivatives(axis);
-    if own.max_abs() == 0.0 {
+    let mut own = derivative(axis);
+    let mut path: Vec<Bernstein> = counts.iter().map(|i| derivative(*i)).collect();
+    let rests = |i: usize| piece.control_points().iter().all(|p| p[i] == piece.points[0][i]);
+    if rests(axis) {
         return ((0.0, 0.0), (0.0, 0.0));
     }
-    if path.iter().all(|(x, _)| x.max_abs() == 0.0) {
+    if counts.iter().all(|i| rests(*i)) {
         return ((feed, 0.0), (0.0, 0.0));
     }
+    let mut below = if polynomial { Bernstein::new(&[1.0]) } else { d };
+    // L′ is |u|/D², so that what is taken out of u divides 1/L′ too; its square root stands for it in `below`, and is 0 where
+    // the piece stands, which leaves its acceleration without a bound unless it is straight.
+    let mut stands = false;
+    for at_end in [false, true] {
+        while std::iter::once(&own)
+            .chain(&path)
+            .all(|u| 0 < u.degree() && (if at_end { u.end() } else { u.start() }) == 0.0)
+        {
+            stands = true;
+            own = own.without_root(at_end);
+            for u in &mut path {
+                *u = u.without_root(at_end);
+            }
+        }
+    }
+    let mut moving: Vec<usize> = counts.to_vec();
+    moving.push(axis);
+    let straight = is_straight(&piece, &moving);
+    if stands {
+        below = Bernstein::new(&[f64::INFINITY]);
+    }
+    let counted = counts.contains(&axis);
+    let with_second = |u: Bernstein| (u, u.derivative());
+    let path: Vec<_> = path.into_iter().map(with_second).collect();
     let depth = if piece.degree == 1 { 0 } else { HALVINGS };
     let (mut speed, mut acceleration) = ((0.0, 0.0), (0.0, 0.0));
-    let mut stack = vec![Derivatives { own, own_second, path, t: 0.0, level: 0 }];
+    let (mut seen, mut parts) = (0.0f64, 0);
+    let own_second = own.derivative();
+    let mut stack = vec![Derivatives { own, own_second, path, below, t: 0.0, level: 0 }];
     while let Some(part) = stack.pop() {
-        if part.level < depth {
-            stack.extend(part.halves());
+        seen = seen.max(part.seen());
+        let (mut fast, mut quick) = part.bounds();
+        // A quotient of nothing by nothing bounds nothing either.
+        fast = if fast.is_nan() { f64::INFINITY } else { fast };
+        quick = if quick.is_nan() { f64::INFINITY } else { quick };
+        if counted {
+            fast = fast.min(1.0);
+        }
+        if straight {
+            quick = 0.0;
+        }
+        let loose = LOOSE * seen.max(LITTLE) < fast || (quick == f64::INFINITY && !stands);
+        if part.level < depth || (loose && depth != 0 && part.level < DEEPEST && parts < MOST_PARTS) {
+            parts += 1;
+            let [first, last] = part.halves();
+            stack.push(last);
+            stack.push(first);
             continue;
         }
-        let least = |x: &Bernstein| x.min().max(-x.max()).max(0.0);
-        let square = part.path.iter().map(|(x, _)| least(x) * least(x)).sum::<f64>();
-        let across = part.path.iter().map(|(x, y)| x.max_abs() * y.max_abs()).sum::<f64>();
-        let fast = feed * part.own.max_abs() / square.sqrt();
-        // mm/min becomes mm/s.
-        let feed = feed / 60.0;
-        let quick = feed * feed * (part.own_second.max_abs() + part.own.max_abs() * across / square) / square;
         if speed.0 < fast {
             speed = (fast, part.t);
         }
@@ -322,7 +444,9 @@ fn of_piece(counts: &[usize], piece: &Bezier, axis: usize, feed: f64) -> ((f64, 
             acceleration = (quick, part.t);
         }
     }
-    (speed, acceleration)
+    // mm/min becomes mm/s.
+    let (a_minute, a_second) = (feed, feed / 60.0);
+    ((a_minute * speed.0, speed.1), (a_second * a_second * acceleration.0, acceleration.1))
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ use crate::geom::nurbs::Nurbs;
 use crate::ir::{
     ArcBy, Auxiliary, COEFFICIENTS, Circle, Curve, Cut, Decimals, Located, Passed, Polyline, PolynomialBlock,
     Program, Role, Shift, Step, Units, Written, WrittenArc, WrittenNurbs, WrittenPoints, WrittenPolynomial,
-    turned_end,
+    sweep, turned_end,
 };
 use crate::machine::Machine;
 use crate::machine::remark::wrapped;
@@ -310,12 +310,39 @@ impl Quantiser<'_> {
                 let sweep = once.with_turns(turns).sweep().abs();
                 let degrees =
                     Decimal::round(sweep * DEGREES, self.machine.digits.rotary).ok_or(Unwritable)?;
+                let meant = ArcBy::Turn(circle, degrees);
+                let off = if loose { 0.0 } else { self.turn_is_off(arc, (&start, &end), &circle, degrees) };
+                if self.tolerance < off {
+                    return self.arc_in_lines(arc);
+                }
                 let end = turned_end(&self.digits, (&start, &end), &circle, degrees).ok_or(Unwritable)?;
                 self.loose = true;
                 self.arrive(&end);
-                Ok(Written::Arc(WrittenArc { end, by: ArcBy::Turn(circle, degrees), ..stated }))
+                Ok(Written::Arc(WrittenArc { end, by: meant, ..stated }))
             }
         }
+    }
+
+    /// How far a turn by an angle is from an arc, its end from the arc's included, mm.
+    fn turn_is_off(
+        &self,
+        arc: &Arc,
+        (start, end): (&Units, &Units),
+        circle: &Circle,
+        degrees: Decimal,
+    ) -> f64 {
+        let place =
+            |units: &Units| -> Position { std::array::from_fn(|i| units_to_f64(units[i], self.digits[i])) };
+        let (mut start, mut end) = (place(start), place(end));
+        // The direction of the tool is no place.
+        if let Some(first) = self.machine.axes.direction() {
+            start[first..].copy_from_slice(&arc.start()[first..]);
+            end[first..].copy_from_slice(&arc.end()[first..]);
+        }
+        let sweep = sweep(circle.sense, degrees);
+        let (off, ends) = arc.deviation_turned(circle.plane, start, end, circle.place(&self.digits), sweep);
+        let asked = arc.end();
+        off + ends.iter().zip(&asked).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
     }
 
     /// An arc by a place in its middle; lines where one would do, and where rounded places say too little about it.
@@ -345,8 +372,12 @@ impl Quantiser<'_> {
         Ok(Written::Arc(written))
     }
 
+    /// Half of the tolerance is for the chords, or what is left of it beside an end that is off the circle, at least a
+    /// fiftieth.
     fn chords(&self, arc: &Arc) -> Polyline {
-        super::arcs::lines(arc, self.machine.axes.count(), 0.5 * self.tolerance)
+        let left = 0.9 * (self.tolerance - arc.misfit());
+        let share = left.clamp(0.02 * self.tolerance, 0.5 * self.tolerance);
+        super::arcs::lines(arc, self.machine.axes.count(), share)
     }
 
     fn arc_in_lines(&mut self, arc: &Arc) -> Result<Written, Unwritable> {
@@ -359,11 +390,20 @@ impl Quantiser<'_> {
         let start = self.curve_start(&pieces.first().ok_or(Unwritable)?.start(), turns)?;
         let mut from = start;
         let mut blocks = Vec::with_capacity(pieces.len());
+        // A piece below the last decimal, or of control points that are all one, is no block: it would name no axis.
+        let mut resting = None;
+        let mut take = |block: PolynomialBlock, from: &mut Units| {
+            if block.rests(from) {
+                resting = Some(block);
+            } else {
+                *from = block.end;
+                blocks.push(block);
+            }
+        };
         for piece in pieces {
             let end = self.unturned(self.point(&piece.end())?, &start, turns);
             if !piece.is_polynomial() {
-                blocks.push(rational::block(self, piece, &end)?);
-                from = end;
+                take(rational::block(self, piece, &end)?, &mut from);
                 continue;
             }
             let mut coefficients = [[Decimal::ZERO; COEFFICIENTS]; MAX_AXES];
@@ -380,8 +420,11 @@ impl Quantiser<'_> {
                 };
             }
             let pl = Decimal::new(1, 0);
-            blocks.push(PolynomialBlock { pl, end, coefficients, denominator: None, line: 0 });
-            from = end;
+            take(PolynomialBlock { pl, end, coefficients, denominator: None, line: 0 }, &mut from);
+        }
+        // A path that is less than the last decimal everywhere is told by its block.
+        if blocks.is_empty() {
+            blocks.extend(resting);
         }
         self.arrive(&from);
         Ok(Written::Polynomial(WrittenPolynomial { start, blocks }))

@@ -13,12 +13,12 @@
 //! of equal ratio of m/n that hold it.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::geom::bezier::Bezier;
 use crate::geom::elementary::ln_1p;
 use crate::geom::logcurve::{LogCurve, Measure};
-use crate::ir::{Curve, Cut, Intent, Logarithmic, Role, Step};
+use crate::geom::{self, bezier::Bezier};
+use crate::ir::{Curve, Cut, Intent, Logarithmic, Polyline, Role, Step};
 use crate::machine::{Machine, RotaryFeed};
-use crate::units::{Axes, DEGREES, Kind};
+use crate::units::{Axes, DEGREES, Kind, Position};
 
 /// The most stretches of one path.
 const MAX_STRETCHES: usize = 1000;
@@ -110,12 +110,15 @@ fn weight(machine: &Machine, radius: f64) -> f64 {
     }
 }
 
-/// In how many parts a piece is looked at.
+/// At how many places of a piece its speed is looked at, less one.
 const PARTS: i32 = 16;
 
-/// The length of a piece as F counts it, by Simpson's rule on sixteen parts.
+/// The length of a piece as F counts it. A block that moves nothing that F counts runs at F in its rotary axes, in degrees.
 pub fn counted_length(piece: &Bezier, axes: &Axes, machine: &Machine, radius: f64) -> f64 {
-    length(piece, axes, weight(machine, radius))
+    match length(piece, axes, weight(machine, radius)) {
+        0.0 => rotary_length(piece, axes),
+        counted => counted,
+    }
 }
 
 /// The length of a piece in the linear axes, mm.
@@ -123,15 +126,62 @@ pub fn linear_length(piece: &Bezier, axes: &Axes) -> f64 {
     length(piece, axes, 0.0)
 }
 
-fn length(piece: &Bezier, axes: &Axes, degree: f64) -> f64 {
-    let parts = if piece.degree == 1 { 1 } else { PARTS };
-    let h = 1.0 / f64::from(parts);
-    let rate = |t: f64| speed(piece, axes, degree, t);
-    let part = |i: i32| {
-        let t = f64::from(i) * h;
-        h / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * h) + rate(t + h))
+/// How much of what a feed that is asked for is a speed of passes along a curve: mm of the linear axes; where these rest,
+/// what F counts of the others.
+pub fn amount(curve: &Curve, axes: &Axes, machine: &Machine, radius: f64) -> f64 {
+    match curve {
+        Curve::Logarithmic(log) => log.curve.amount(log.along),
+        Curve::Arc(arc) => arc.length(),
+        Curve::Lines(line) | Curve::Through(_, line) => amount_of_lines(line, axes, machine, radius),
+        Curve::Polynomial(_) | Curve::Nurbs(_) | Curve::Formula(_) => {
+            let pieces = curve.pieces();
+            match pieces.iter().map(|piece| linear_length(piece, axes)).sum::<f64>() {
+                0.0 => pieces.iter().map(|piece| counted_length(piece, axes, machine, radius)).sum(),
+                linear => linear,
+            }
+        }
+    }
+}
+
+/// The same of lines, each for itself.
+pub fn amount_of_lines(line: &Polyline, axes: &Axes, machine: &Machine, radius: f64) -> f64 {
+    let of = |kind: Kind| -> Vec<usize> { (0..axes.count()).filter(|i| axes.kind(*i) == kind).collect() };
+    let (linear, rotary) = (of(Kind::Linear), of(Kind::Rotary));
+    // A degree where F counts none is one.
+    let degree = match weight(machine, radius) {
+        0.0 => 1.0,
+        weight => weight,
     };
-    (0..parts).map(part).sum()
+    let way = |axes: &[usize], from: &Position, to: &Position| {
+        axes.iter().map(|i| (to[*i] - from[*i]) * (to[*i] - from[*i])).sum::<f64>().sqrt()
+    };
+    let mut from = line.start;
+    let each = |to: Position| {
+        let from = std::mem::replace(&mut from, to);
+        match way(&linear, &from, &to) {
+            0.0 => degree * way(&rotary, &from, &to),
+            linear => linear,
+        }
+    };
+    line.points().map(each).sum()
+}
+
+/// How far the rotary axes go along a piece, degrees.
+pub fn rotary_length(piece: &Bezier, axes: &Axes) -> f64 {
+    geom::length::length(piece, &scale(axes, 0.0, 1.0)).mm
+}
+
+fn length(piece: &Bezier, axes: &Axes, degree: f64) -> f64 {
+    geom::length::length(piece, &scale(axes, 1.0, degree)).mm
+}
+
+/// What each axis counts, a millimetre and a degree counting so much.
+fn scale(axes: &Axes, mm: f64, degree: f64) -> Position {
+    std::array::from_fn(|i| match axes.as_slice().get(i) {
+        Some((_, Kind::Linear)) => mm,
+        Some((_, Kind::Rotary)) => degree,
+        Some((_, Kind::Direction)) | None => 0.0,
+    })
 }
 
 /// |x′(t)| with a degree counted as so many millimetres.

@@ -135,6 +135,28 @@ impl Rational {
 }
 
 impl Shape {
+    /// The piece by its control points again; none of what is no such piece.
+    pub fn piece(&self) -> Option<Bezier> {
+        let (above, below) = match self {
+            Shape::Polynomial(polynomial) => (&**polynomial, None),
+            Shape::Rational(rational) => (&rational.above, Some(&rational.below)),
+            Shape::Line(..) | Shape::Arc(_) | Shape::Logarithmic(..) | Shape::Formula(_) => return None,
+        };
+        let m = above.degree;
+        let mut piece = Bezier::new(&[[0.0; MAX_AXES]; MAX_PIECE_DEGREE + 1][..=m]);
+        if let Some(below) = below {
+            piece.weights = Bezier::ordinates(&below[..=m], 1.0);
+        }
+        for axis in 0..MAX_AXES {
+            let a: [f64; MAX_PIECE_DEGREE + 1] = std::array::from_fn(|k| above.a[k][axis]);
+            let ordinates = Bezier::ordinates(&a[..=m], 1.0);
+            for i in 0..=m {
+                piece.points[i][axis] = ordinates[i] / piece.weights[i];
+            }
+        }
+        Some(piece)
+    }
+
     /// The straight line between two positions.
     pub fn line(from: Position, to: Position) -> Shape {
         Shape::Line(from, super::partition::difference(&to, &from))

@@ -217,7 +217,7 @@ impl Cursor<'_> {
         Metric::new(&kinds, self.radius).distance(&[0.0; MAX_AXES], bound)
     }
 
-    /// The length of the linear axes' path, mm, by Simpson's rule on sixteen parts of each piece.
+    /// The length of the linear axes' path, mm.
     fn length(&self, pieces: &[Bezier]) -> f64 {
         let axes = self.decimals.program.axes;
         pieces.iter().map(|piece| linear_length(piece, &axes)).sum()

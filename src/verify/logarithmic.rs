@@ -3,8 +3,10 @@
 use super::{Cursor, Found, Ideal, Status};
 use crate::decimal::{Decimal, unit_at_surface};
 use crate::diagnostic::Diagnostics;
+use crate::geom::bernstein::Bernstein;
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::{Bound, Metric, OrderError, log_chord, log_piece, segment_piece};
+use crate::geom::length::{length, of_derivative};
 use crate::geom::logcurve::LogCurve;
 use crate::geom::oddeven::{OddEven, polyline_deviation};
 use crate::ir::{Logarithmic, Method, Written, WrittenPoints};
@@ -37,16 +39,24 @@ impl<'p> Cursor<'p> {
                 Written::Lines(_) => self.chords((log, feed), &stretches, &mut found, tolerance)?,
                 Written::Arc(_) => return Err(self.arc_here()),
                 Written::Polynomial(_) | Written::Nurbs(_) => {
-                    let pieces = self.path_pieces(log, curve.end(), &stretches, &mut found)?;
-                    for (i, piece) in pieces.iter().enumerate() {
-                        let bound = log_piece(curve, piece).map_err(|error| {
-                            self.differs("order-differs", format!("in piece {}: {error}", i + 1))
-                        })?;
-                        found.deviation = found.deviation.max(bound);
+                    let (pieces, feeds) = self.path_pieces(log, curve.end(), &mut found)?;
+                    let half = self.half_of_x();
+                    for (piece, feed) in pieces.iter().zip(&feeds) {
+                        let reaches = piece.start()[0].max(piece.end()[0]);
+                        self.piece_feed(feed, &stretches[stretch_of(&stretches, reaches - half)])?;
                     }
-                    if let (Some(first), Some(last)) = (pieces.first(), pieces.last()) {
-                        ends(curve, first.start()[0], last.end()[0], &mut found);
-                    }
+                    let at_equal_x = whole_path(curve, &pieces, false);
+                    let bound = match at_equal_x {
+                        Ok(bound) if bound.mm <= tolerance => Ok(bound),
+                        Ok(bound) => Ok(whole_path(curve, &pieces, true)
+                            .ok()
+                            .filter(|nearest| nearest.mm < bound.mm)
+                            .unwrap_or(bound)),
+                        Err(error) => whole_path(curve, &pieces, true).map_err(|_| error),
+                    };
+                    found.deviation = bound.map_err(|(i, error)| {
+                        self.differs("order-differs", format!("in piece {}: {error}", i + 1))
+                    })?;
                 }
                 Written::Through(_, points) => {
                     self.through(log, &stretches, points, tolerance, &mut found)?;
@@ -81,8 +91,8 @@ impl<'p> Cursor<'p> {
             }
             Written::Arc(_) => return Err(self.arc_here()),
             Written::Polynomial(_) | Written::Nurbs(_) => {
-                let pieces = self.path_pieces(log, end, &stretches, &mut found)?;
-                self.odd_even_pieces(curve, asked, &pieces, &mut found)?;
+                let (pieces, feeds) = self.path_pieces(log, end, &mut found)?;
+                self.odd_even_pieces(curve, asked, (&pieces, &feeds), &stretches, &mut found)?;
             }
             Written::Through(_, points) => self.through(log, &stretches, points, tolerance, &mut found)?,
         }
@@ -124,18 +134,16 @@ impl<'p> Cursor<'p> {
         }
     }
 
-    /// The pieces of a path from where the cursor stands to where X = `end` is reached, in the order of X, each with the
-    /// feed of its stretch.
+    /// The pieces of a path from where the cursor stands to where X = `end` is reached, in the order of X, and the F of each.
     fn path_pieces(
         &mut self,
         log: &Logarithmic,
         end: f64,
-        stretches: &[Stretch],
         found: &mut Found,
-    ) -> Result<Vec<Bezier>, Diagnostics> {
-        // Half a unit of X is the most that rounding takes from the end.
-        let half = 0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64 + 1.0e-12;
+    ) -> Result<(Vec<Bezier>, Vec<PieceFeed>), Diagnostics> {
+        let half = self.half_of_x();
         let mut all: Vec<Bezier> = Vec::new();
+        let mut feeds = Vec::new();
         loop {
             let cut = self.written()?;
             let pieces = self.pieces(&cut.curve)?;
@@ -144,8 +152,7 @@ impl<'p> Cursor<'p> {
             }
             found.path_blocks += blocks(&cut.curve, pieces.len());
             for piece in &pieces {
-                let reaches = piece.start()[0].max(piece.end()[0]);
-                self.stretch_feed(cut.feed, &stretches[stretch_of(stretches, reaches - half)])?;
+                feeds.push(PieceFeed { feed: cut.feed, at: self.at });
                 found.minutes += self.minutes(&log.curve, piece, cut.feed);
             }
             all.extend(pieces);
@@ -157,32 +164,51 @@ impl<'p> Cursor<'p> {
         }
         if log.back {
             all = all.iter().rev().map(Bezier::reversed).collect();
+            feeds.reverse();
         }
-        Ok(all)
+        Ok((all, feeds))
     }
 
-    /// How long a piece takes, minutes: Simpson's rule on sixteen intervals of the length that F counts; a straight piece
-    /// needs one.
+    /// Half a unit of X: the most that rounding takes from the end of a path.
+    fn half_of_x(&self) -> f64 {
+        0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64 + 1.0e-12
+    }
+
+    /// Checks F of a piece that lies behind.
+    fn piece_feed(&mut self, piece: &PieceFeed, stretch: &Stretch) -> Result<(), Diagnostics> {
+        if self.stretch_feed(piece.feed, stretch).is_ok() {
+            return Ok(());
+        }
+        // Told where the piece stands.
+        (self.at, self.within) = (piece.at, 0);
+        self.stretch_feed(piece.feed, stretch)
+    }
+
+    /// How long a piece takes, minutes. At the surface A counts at the radius there, which is linear in X, so that what F counts
+    /// of a polynomial piece is the length of a vector of polynomials.
     fn minutes(&self, curve: &LogCurve, piece: &Bezier, feed: Option<Decimal>) -> f64 {
         let Some(feed) = feed.map(Decimal::to_f64) else { return 0.0 };
-        let parts = if piece.degree == 1 { 1 } else { 16 };
-        let derivatives: [_; 4] = std::array::from_fn(|axis| piece.numerator(axis).derivative());
-        let x = piece.numerator(0);
-        let rate = |t: f64| {
-            let [dx, dy, dz, da] = std::array::from_fn(|axis: usize| derivatives[axis].eval(t));
-            let turn = match self.machine.rotary_feed {
-                RotaryFeed::Free | RotaryFeed::InverseTime => 0.0,
-                RotaryFeed::DegreesAsMm => da,
-                RotaryFeed::Surface => da / DEGREES * curve.radius(x.eval(t)),
-            };
-            (dx * dx + dy * dy + dz * dz + turn * turn).sqrt()
-        };
-        let h = 1.0 / f64::from(parts);
-        let part = |i: i32| {
-            let t = f64::from(i) * h;
-            h / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * h) + rate(t + h))
-        };
-        (0..parts).map(part).sum::<f64>() / feed
+        let scaled = |degree: f64| length(piece, &[1.0, 1.0, 1.0, degree, 0.0, 0.0]).mm / feed;
+        match self.machine.rotary_feed {
+            RotaryFeed::Free | RotaryFeed::InverseTime => scaled(0.0),
+            RotaryFeed::DegreesAsMm => scaled(1.0),
+            RotaryFeed::Surface if piece.is_polynomial() => {
+                let slope = curve.radius(1.0) - curve.radius(0.0);
+                let radius = piece.numerator(0).scaled(slope / piece.weights[0], curve.radius(0.0));
+                let [dx, dy, dz, da]: [Bernstein; 4] = std::array::from_fn(|axis| {
+                    piece.numerator(axis).derivative().scaled(1.0 / piece.weights[0], 0.0)
+                });
+                of_derivative(&[dx, dy, dz, da.times(&radius).scaled(1.0 / DEGREES, 0.0)]).mm / feed
+            }
+            // Nothing here writes such pieces; those of others take A at the greatest radius of each sixteenth.
+            RotaryFeed::Surface => (0..16)
+                .map(|i| {
+                    let part = piece.segment(f64::from(i) / 16.0, f64::from(i + 1) / 16.0);
+                    let radius = curve.radius(part.start()[0]).max(curve.radius(part.end()[0]));
+                    length(&part, &[1.0, 1.0, 1.0, radius / DEGREES, 0.0, 0.0]).mm / feed
+                })
+                .sum(),
+        }
     }
 
     /// The line from one position to another in minutes.
@@ -289,12 +315,14 @@ impl<'p> Cursor<'p> {
         })
     }
 
-    /// Odd-even steps written as pieces: each piece runs along one segment, in order.
+    /// Odd-even steps written as pieces: each piece runs along one segment, in order, at the F of the stretch that its step
+    /// belongs to. Where knots were inserted a piece may end inside a step, so that its own X does not say which that is.
     fn odd_even_pieces(
-        &self,
+        &mut self,
         curve: &LogCurve,
         steps: OddEven,
-        pieces: &[Bezier],
+        (pieces, feeds): (&[Bezier], &[PieceFeed]),
+        stretches: &[Stretch],
         found: &mut Found,
     ) -> Result<(), Diagnostics> {
         let metric_kinds: Vec<_> =
@@ -305,21 +333,23 @@ impl<'p> Cursor<'p> {
         // Two roundings of a position, at the radius.
         let slack = 1.0e-9 + unit_at_surface(&self.decimals.program.axes, &self.decimals.digits, radius);
         let mut from = curve.position(curve.start());
-        let mut rest = pieces.iter().peekable();
+        let mut rest = pieces.iter().zip(feeds);
         if let Some(first) = pieces.first() {
             found.deviation = found.deviation.max(metric.distance(&first.start(), &from));
         }
         for (x, a) in steps {
             let to = curve.position_with(x, a);
+            let stretch = &stretches[stretch_of(stretches, x)];
             // How far along the segment the path has come; all its pieces together run in order.
             let mut reached = f64::NEG_INFINITY;
             // Pieces belong to this segment until one ends at its end.
             loop {
-                let Some(piece) = rest.next() else {
+                let Some((piece, feed)) = rest.next() else {
                     return Err(
                         self.differs("less-than-asked", "pieces are missing at the end of a path".to_owned())
                     );
                 };
+                self.piece_feed(feed, stretch)?;
                 let bound = segment_piece(&metric, (&from, &to), piece, slack, &mut reached)
                     .map_err(|error| self.differs("order-differs", error.to_string()))?;
                 found.deviation = found.deviation.max(bound);
@@ -348,15 +378,18 @@ impl<'p> Cursor<'p> {
         let (curve, timed) = (&log.curve, self.is_timed(log));
         let Some(mut run) = self.lines_run()? else { return Ok(()) };
         let mut from = self.decimals.position(&self.before(run));
-        let first = from[0];
-        let off_cone = |p: &Position| {
-            let asked = curve.position_with(p[0], 0.0);
-            let (dy, dz) = (p[1] - asked[1], p[2] - asked[2]);
-            (dy * dy + dz * dz).sqrt()
+        // At equal X, and with each point at the place of the curve that is nearest to it: where A turns fast, half a unit
+        // of X is a long way. Along a path the nearest places wait rather than run back.
+        let off_cone = |p: &Position, x: f64| {
+            let asked = curve.position_with(x, 0.0);
+            let (dx, dy, dz) = (p[0] - x, p[1] - asked[1], p[2] - asked[2]);
+            (dx * dx + dy * dy + dz * dz).sqrt()
         };
+        let mut near = curve.nearest_x(&from);
+        let (first, first_near) = (from[0], near);
+        let mut nearest = Bound::ZERO;
         let radians = |p: &Position| (p[3] - curve.index) / DEGREES;
-        // Half a unit of X is the most that rounding takes from the end.
-        let half = 0.5 / crate::decimal::power_of_ten(self.decimals.digits[0]) as f64 + 1.0e-12;
+        let half = self.half_of_x();
         let done = |x: f64| if log.back { x <= curve.start() + half } else { curve.end() - half <= x };
         while !done(from[0]) {
             if run.count() <= self.within {
@@ -381,13 +414,22 @@ impl<'p> Cursor<'p> {
             } else {
                 None
             };
-            let chord = log_chord(curve, (low[0], radians(low)), (high[0], radians(high)));
             // The distance from the cone is greatest at an end, since both are linear in X.
-            let off = off_cone(&from).max(off_cone(&to));
-            let bound = Bound { mm: (chord.mm * chord.mm + off * off).sqrt(), rad: chord.rad };
-            let far = 100.0 * tolerance.max(1.0e-4) < bound.mm;
+            let bound = |[x_from, x_to]: [f64; 2]| {
+                let (x_low, x_high) = if log.back { (x_to, x_from) } else { (x_from, x_to) };
+                let chord = log_chord(curve, (x_low, radians(low)), (x_high, radians(high)));
+                let off = off_cone(&from, x_from).max(off_cone(&to, x_to));
+                Bound { mm: (chord.mm * chord.mm + off * off).sqrt(), rad: chord.rad }
+            };
+            let next = curve.nearest_x(&to);
+            let next = if log.back { next.min(near) } else { next.max(near) };
+            nearest = nearest.max(bound([near, next]));
+            near = next;
+            let bound = bound([from[0], to[0]]);
+            let off = bound.mm.min(nearest.mm);
             let refused = refused.or_else(|| {
-                far.then(|| ("point-differs", format!("this line is {:.4} mm from the curve", bound.mm)))
+                (100.0 * tolerance.max(1.0e-4) < off)
+                    .then(|| ("point-differs", format!("this line is {off:.4} mm from the curve")))
             });
             if let Some((id, message)) = refused {
                 self.within -= 1;
@@ -403,8 +445,14 @@ impl<'p> Cursor<'p> {
             };
             from = to;
         }
-        let (start, end) = if log.back { (from[0], first) } else { (first, from[0]) };
-        ends(curve, start, end, found);
+        let order = |first: f64, last: f64| if log.back { (last, first) } else { (first, last) };
+        let (start, end) = order(first, from[0]);
+        add(&mut found.deviation, missed(curve, start, end));
+        let (start, end) = order(first_near, near);
+        add(&mut nearest, missed(curve, start, end));
+        if tolerance < found.deviation.mm && nearest.mm < found.deviation.mm {
+            found.deviation = nearest;
+        }
         self.leave(run);
         Ok(())
     }
@@ -446,6 +494,27 @@ impl<'p> Cursor<'p> {
     }
 }
 
+/// The F that a piece has in the text, and the step that it belongs to.
+struct PieceFeed {
+    feed: Option<Decimal>,
+    at: usize,
+}
+
+/// The bound for all pieces of a path, or the number of the first that has none: at equal X; or with each transition at the
+/// `nearest` place of the curve, where A turns so fast that half a unit of X is a long way.
+fn whole_path(curve: &LogCurve, pieces: &[Bezier], nearest: bool) -> Result<Bound, (usize, OrderError)> {
+    let at = |p: &Position| if nearest { curve.nearest_x(p) } else { p[0] };
+    let mut bound = Bound::ZERO;
+    for (i, piece) in pieces.iter().enumerate() {
+        let ahead = [piece.start(), piece.end()].map(|p| at(&p) - p[0]);
+        bound = bound.max(log_piece(curve, piece, ahead).map_err(|error| (i, error))?);
+    }
+    if let (Some(first), Some(last)) = (pieces.first(), pieces.last()) {
+        add(&mut bound, missed(curve, at(&first.start()), at(&last.end())));
+    }
+    Ok(bound)
+}
+
 /// How far the end of a written segment is from the end of the segment that was asked.
 #[derive(Clone, Copy)]
 struct End {
@@ -481,15 +550,19 @@ fn surface_distance(curve: &LogCurve, read: &Position, x: f64, a: f64) -> Bound 
     end.segment(&end)
 }
 
-/// Adds what a late start or an early end costs: how far the curve runs between where it was asked to end and where the
-/// path does.
-fn ends(curve: &LogCurve, start: f64, end: f64, found: &mut Found) {
+fn add(bound: &mut Bound, more: Bound) {
+    bound.mm += more.mm;
+    bound.rad += more.rad;
+}
+
+/// What a late start or an early end costs: how far the curve runs between where it was asked to end and where the path
+/// does.
+fn missed(curve: &LogCurve, start: f64, end: f64) -> Bound {
     let (mm, rad) = [(start, curve.start()), (end, curve.end())]
         .map(|(read, asked)| curve.run_bound(read, asked))
         .into_iter()
         .fold((0.0, 0.0), |most: (f64, f64), run| (most.0.max(run.0), most.1.max(run.1)));
-    found.deviation.mm += mm;
-    found.deviation.rad += rad;
+    Bound { mm, rad }
 }
 
 /// How many blocks a curve of so many pieces takes.

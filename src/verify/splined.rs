@@ -5,7 +5,7 @@ use super::{Cursor, Found};
 use crate::diagnostic::Diagnostics;
 use crate::geom::runs::Likeness;
 use crate::ir::{Curve, Cut, Polyline, Units, Written};
-use crate::pass::stretch::linear_length;
+use crate::pass::stretch::{amount_of_lines, linear_length};
 use crate::units::Kind;
 
 /// One run.
@@ -149,7 +149,9 @@ impl Cursor<'_> {
                     let part = line.part(from, from + count);
                     from += count;
                     let found = self.lines(&part, written)?;
-                    let minutes = speed.map_or(0.0, |speed| found.cutting_length / speed);
+                    let axes = &self.decimals.program.axes;
+                    let amount = amount_of_lines(&part, axes, self.machine, self.radius);
+                    let minutes = speed.map_or(0.0, |speed| amount / speed);
                     Found { minutes, ..found }
                 }
                 written @ (Written::Polynomial(_) | Written::Nurbs(_)) => {

@@ -5,13 +5,17 @@
 //! | `bounds` | what is stated of lines, against the distance that is there |
 //! | `cl` | CL data: what its statements mean, as it stands in the program of every machine |
 //! | `damaged` | the remarks at which an operator restarts a program, each with every fault |
+//! | `generated` | random inputs on random machines, none of which compile refuses by its own proof |
 //! | `left` | what a program leaves behind on the control, at tool changes and at its end, and what its remarks are made of |
+//! | `proof` | lengths, times and bounds, and programs that were refused by their own proof |
 //! | `starts` | where paths begin, and cuts without length |
 
 mod bounds;
 mod cl;
 mod damaged;
+mod generated;
 mod left;
+mod proof;
 mod starts;
 
 use splinepost::diagnostic::Diagnostics;

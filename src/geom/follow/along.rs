@@ -65,6 +65,10 @@ impl Stand {
     /// The place that is nearest to `q` where `more` farther on it is to be looked for; none at the end of the piece.
     fn nearest(&self, q: &Position, more: f64, close: f64) -> Option<f64> {
         let t = foot(&self.piece, q, self.ahead(more), self.t, 1.0);
+        // Where a piece stands at its end Newton's method creeps towards it.
+        if distance(q, &self.piece.end()) <= distance(q, &self.piece.eval(t)) {
+            return None;
+        }
         (close < self.length(1.0) - self.length(t)).then_some(t)
     }
 

@@ -15,7 +15,7 @@ impl Reader<'_> {
         lines.insert(0, lines.first().copied().unwrap_or(0));
         // A first block that repeats the first point has an empty support; its weight is that of the point.
         let mut first_weight = None;
-        if points.len() > degree + 2
+        if degree + 2 <= points.len()
             && points[0] == points[1]
             && pl[0].is_zero()
             && pl[1].is_zero()
