@@ -291,7 +291,7 @@ impl<'m> Assembler<'m> {
 
     /// Takes the length of the tool that was called last from a register: the first line that names one says which it is.
     /// False where another line did, or no tool was called.
-    pub fn takes_register(&mut self, register: u32) -> bool {
+    pub fn takes_register(&mut self, register: u32, span: Span) -> bool {
         let Some((call, known)) = &mut self.tool else { return false };
         if *known {
             return call.register() == register;
@@ -302,6 +302,10 @@ impl<'m> Assembler<'m> {
         let called = self.steps.iter_mut().rev().find(|located| matches!(located.step, Step::Tool(_)));
         if let Some(located) = called {
             located.step = Step::Tool(call);
+            if !call.is_own() {
+                // What is told of it is told where it stands.
+                located.span = span;
+            }
         }
         true
     }

@@ -356,7 +356,7 @@ impl<'m> Frame<'m> {
                 }
                 "register" => {
                     let Ok(register) = value.parse::<u32>() else { return false };
-                    if !assembler.takes_register(register) {
+                    if !assembler.takes_register(register, span) {
                         let message = format!("the tool does not have the length of register {register}");
                         assembler.error("tool-offset", message, span.start as usize..span.end as usize);
                     }

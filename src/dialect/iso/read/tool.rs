@@ -84,7 +84,7 @@ impl Reader<'_> {
                 let register = h.units(0).and_then(|h| u32::try_from(h).ok());
                 let takes = match register {
                     Some(register) if register == due || self.offset_free => {
-                        self.assembler.takes_register(register)
+                        self.assembler.takes_register(register, self.assembler.span(range.clone()))
                     }
                     Some(_) | None => false,
                 };
