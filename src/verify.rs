@@ -169,7 +169,7 @@ pub fn verify(
                 let gap = std::mem::take(&mut cursor.gap);
                 let mut found = cursor.cut(curve, (*feed, *role), tolerance, &mut ideal)?;
                 // The path before ends that far from where this one starts; a turn takes it along.
-                found.deviation.mm += gap;
+                found.deviation.mm += gap + intent.input_error;
                 if let Curve::Arc(_) = curve {
                     found.deviation.mm += intent.tilt_error.mm;
                 }

@@ -3,6 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `apt` | CL data of CAM systems, from their text to proved programs |
+//! | `cases` | small inputs of the field and their right answers |
 //! | `golden` | inputs and every machine's output, side by side, as bytes |
 //! | `files` | curve files: DXF, IGES, STEP |
 //! | `errors` | bad inputs and their rendered diagnostics |
@@ -28,6 +29,7 @@
 //! | `tidy` | documents, fixtures and rules in step with the code |
 
 mod apt;
+mod cases;
 mod cli;
 mod damage;
 mod diff;
