@@ -264,6 +264,9 @@ pub struct Intent {
     /// What rounding the angles of tilted planes cost: how far the tool's direction is from the one asked for, radians, and an
     /// arc that is square to it from the arc asked for, mm.
     pub tilt_error: Bound,
+    /// How far paths may be from what the input states, mm: a whole turn whose angles are stated a hair beside one, an arc that
+    /// is as good as straight.
+    pub input_error: f64,
     /// What to know about it.
     pub warnings: Diagnostics,
 }

@@ -17,6 +17,7 @@ pub mod page;
 pub mod paper;
 pub mod paths;
 pub mod profiles;
+mod thin;
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

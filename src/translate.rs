@@ -103,7 +103,15 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
     let number = *number;
     let mut program = Program { name: name.clone(), number, axes, steps: asked };
     planes::count_back(&mut program, machine.orientation.plane_order)?;
-    Ok(Intent { program, tolerance: None, name_span: None, radius: None, tilt_error: Bound::ZERO, warnings })
+    Ok(Intent {
+        program,
+        tolerance: None,
+        name_span: None,
+        radius: None,
+        tilt_error: Bound::ZERO,
+        input_error: 0.0,
+        warnings,
+    })
 }
 
 /// Which axes a program moves, in order; where it leads the tip of the tool, all of them.

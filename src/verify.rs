@@ -186,7 +186,7 @@ pub fn verify(
                     .cut(curve, (*feed, *role), tolerance, &mut ideal)
                     .map_err(|refused| of_entity(refused, located.span))?;
                 // The path before ends that far from where this one starts; a turn takes it along.
-                found.deviation.mm += gap;
+                found.deviation.mm += gap + intent.input_error;
                 if let Curve::Arc(_) = curve {
                     found.deviation.mm += intent.tilt_error.mm;
                 }

@@ -84,6 +84,9 @@ impl Plot {
             Some(log) => traces(log, options.tolerance)?,
             None => Vec::new(),
         };
+        for message in paths::left_out(&track) {
+            told.push(Diagnostic::note("figure-left-out", message));
+        }
         figures.extend(paths::figures(&track, flute.as_ref().map(|log| &log.curve)));
         if let (Some(intent), Understood::Program(..)) = (&intent, &understood) {
             let setting = Setting {
@@ -94,7 +97,14 @@ impl Plot {
                 polygons: false,
             };
             let reference = Track::of_program(&intent.program, &setting)?;
-            figures.extend(deviation::figure(&track, &reference, flute.as_ref().map(|log| &log.curve)));
+            match deviation::figure(&track, &reference, flute.as_ref().map(|log| &log.curve)) {
+                Ok(figure) => figures.push(figure),
+                Err(why) => {
+                    let message = format!("the figure of the deviation is not drawn: {why}");
+                    let hint = "`diff` and `verify` compare programs of other paths";
+                    told.push(Diagnostic::warning("figure-left-out", message).hint(hint));
+                }
+            }
         }
         let (profiles, summary) = profiles::figures(&track, &options)?;
         figures.extend(profiles);

@@ -18,9 +18,12 @@
 pub mod conic;
 pub mod dxf;
 pub mod iges;
+mod invert;
 pub mod order;
 mod spline;
 pub mod step;
+mod straight;
+mod turn;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
@@ -79,6 +82,16 @@ pub struct FileCurve {
     pub kind: &'static str,
     /// Where it stands.
     pub span: Span,
+    /// Whether the file says that it is closed.
+    pub closed: bool,
+    /// How far its path may be from what the file states, mm.
+    pub error: f64,
+}
+
+impl FileCurve {
+    fn new(path: Path, kind: &'static str, span: Span) -> FileCurve {
+        FileCurve { path, kind, span, closed: false, error: 0.0 }
+    }
 }
 
 /// What a file holds, in its own units.
@@ -182,21 +195,39 @@ pub fn read(source: &Source, id: SourceId, format: &Format, unit: Option<f64>) -
     let mut errors = Diagnostics::new();
     let mut empty = LeftOut::default();
     for curve in curves {
-        let path = if scale == 1.0 { curve.path } else { curve.path.scaled(scale) };
+        let FileCurve { path, kind, span, closed, .. } = curve;
+        let path = if scale == 1.0 { path } else { path.scaled(scale) };
         if !path.reach().is_some_and(|reach| reach < GREATEST) {
             if errors.0.len() < MOST_ERRORS {
-                let message = format!("{} goes beyond a million mm", curve.kind);
-                errors.push(Diagnostic::error("point-range", message).at(curve.span, ""));
+                let message = format!("{kind} goes beyond a million mm");
+                errors.push(Diagnostic::error("point-range", message).at(span, ""));
             }
         } else if path.is_empty() {
-            empty.add(&format!("{} without length", curve.kind), curve.span);
+            empty.add(&format!("{kind} without length"), span);
         } else {
-            found.push(FileCurve { path, ..curve });
+            if closed {
+                warnings.0.extend(not_closed(&path, kind, span));
+            }
+            let (path, error) = straight::straightened(path);
+            found.push(FileCurve { path, kind, span, closed, error });
         }
     }
     errors.into_result()?;
     warnings.extend(empty.warnings());
     Ok(Found { curves: found, warnings })
+}
+
+/// What to say of a curve that is said to be closed, and is not: it is run as its numbers have it.
+fn not_closed(path: &Path, kind: &str, span: Span) -> Option<Diagnostic> {
+    let apart = order::gap(&path.start(), &path.end());
+    // Six printed digits of a coordinate.
+    let most = 1e-6 * path.reach().unwrap_or(0.0).max(1.0);
+    (most < apart).then(|| {
+        let message = format!("{kind} is said to be closed, and ends {apart:.6} mm from its start");
+        Diagnostic::warning("curve-open", message)
+            .at(span, "is run as the open curve that its numbers make")
+            .hint("where it should be closed, close it in the CAD system")
+    })
 }
 
 /// A place of a file as a position in its three coordinates.
@@ -256,7 +287,7 @@ impl Path {
                 }
                 Path::Lines(points, lines)
             }
-            Path::Conic(conic) => Path::Conic(Conic { start, ..conic }),
+            Path::Conic(conic) => Path::Conic(conic.with_ends(start, conic.end)),
             Path::Pieces(mut pieces) => {
                 if let Some(first) = pieces.first_mut() {
                     first.points[0] = position(&start);
@@ -299,9 +330,8 @@ impl Path {
         match self {
             Path::Lines(points, _) => points.iter().for_each(each),
             Path::Conic(conic) => {
-                conic.hull().iter().for_each(&mut each);
-                each(&conic.start);
-                each(&conic.end);
+                let pieces = conic.mapped(&position).pieces();
+                pieces.iter().flat_map(Bezier::control_points).for_each(|p| each(&point(p)));
             }
             Path::Pieces(pieces) => {
                 pieces.iter().flat_map(Bezier::control_points).for_each(|p| each(&point(p)));

@@ -100,6 +100,8 @@ pub struct Placed {
     pub end: Position,
     /// Where it stands in the file.
     pub span: Span,
+    /// How far it may be from what the input states, mm.
+    pub error: f64,
 }
 
 /// What the machine needs beside the path.

@@ -41,6 +41,16 @@ impl Machine {
         built_in(name).and_then(|text| Machine::parse(text, SourceId::INPUT).ok())
     }
 
+    /// Where a hint says that keys are to be stated: in a file that extends this machine where it is built in, and otherwise in
+    /// its own, which nothing can extend.
+    pub fn to_state(&self, keys: &str) -> String {
+        if built_in(&self.name).is_some() {
+            format!("in a machine file: extends = \"{}\", {keys}", self.name)
+        } else {
+            format!("in the file of machine `{}`: {keys}", self.name)
+        }
+    }
+
     /// Reads a machine file.
     ///
     /// # Errors
@@ -112,11 +122,22 @@ impl Machine {
                     "axis-missing",
                     format!("machine `{}` has no {what} axis {axis}", self.name),
                 )
-                .hint("name it under [axes] in the machine file")
+                .hint(self.axis_named(*axis, *kind))
                 .into());
             }
         }
         Ok(Machine { axes: *axes, ..self.clone() })
+    }
+
+    /// The hint to name an axis of a kind among those that there are.
+    fn axis_named(&self, axis: Axis, kind: Kind) -> String {
+        let key = if kind == Kind::Rotary { "rotary" } else { "linear" };
+        let own = self.axes.as_slice().iter().filter(|(_, own)| *own == kind).map(|(axis, _)| *axis);
+        let names: Vec<String> = own.chain([axis]).map(|axis| format!("\"{axis}\"")).collect();
+        format!(
+            "where there is one, state it {}",
+            self.to_state(&format!("[axes] {key} = [{}]", names.join(", ")))
+        )
     }
 
     /// Which of the program's axes the control counts the other way.

@@ -82,15 +82,16 @@ pub fn choose(
     } else if !blocked.is_empty() && !straight {
         let names: Vec<&str> = blocked.iter().map(Axis::as_str).collect();
         let names = names.join(", ");
+        let allowed: Vec<String> =
+            machine.spline.axes.iter().chain(&blocked).map(|axis| format!("\"{axis}\"")).collect();
         warnings.push(
             Diagnostic::warning(
                 "spline-axes",
                 format!("written as lines: machine `{}` does not let splines move {names}", machine.name),
             )
             .hint(format!(
-                "where the control's splines do move {names}, say so in a machine file: extends = \"{}\", [spline] axes = [\"X\", \"Y\", \"Z\", \"{}\"]",
-                machine.name,
-                names.replace(", ", "\", \"")
+                "where the control's splines do move {names}, say so {}",
+                machine.to_state(&format!("[spline] axes = [{}]", allowed.join(", ")))
             )),
         );
     }

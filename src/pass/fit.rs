@@ -44,8 +44,16 @@ pub fn fit(intent: &Intent, machine: &Machine, fitting: Fitting) -> Intent {
     }
     let Program { name, number, axes, .. } = &intent.program;
     let program = Program { name: name.clone(), number: *number, axes: *axes, steps };
-    let Intent { tolerance, name_span, radius, tilt_error, .. } = *intent;
-    Intent { program, tolerance, name_span, radius, tilt_error, warnings: intent.warnings.clone() }
+    let Intent { tolerance, name_span, radius, tilt_error, input_error, .. } = *intent;
+    Intent {
+        program,
+        tolerance,
+        name_span,
+        radius,
+        tilt_error,
+        input_error,
+        warnings: intent.warnings.clone(),
+    }
 }
 
 /// A run as cuts, at the F that the lines would have; none where all of it stays lines.

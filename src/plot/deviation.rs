@@ -9,6 +9,7 @@
 //! and on into the next piece where that leaves the current one. Distances are those at the surface. What a picture shows
 //! are these places; the bound everywhere is `verify`'s.
 
+use super::thin::thinned;
 use super::{Figure, Style};
 use crate::geom::logcurve::LogCurve;
 use crate::simulate::partition::{Parametric, Piece, Weights, difference};
@@ -20,11 +21,26 @@ use std::ops::Range;
 /// Places on a curved piece that are compared, and on a straight one.
 const PLACES: [usize; 2] = [64, 8];
 
-/// The most places in all.
+/// The most places in all, and the fewest on a piece: of a line beside a curve the ends lie on it, and the middle is farthest.
 const MOST_PLACES: usize = 200_000;
+const FEWEST: usize = 4;
 
 /// A place is at the end of its piece where so little of it is left, mm: what numbers in decimals are apart.
 const END: f64 = 1.0e-3;
+
+/// Why two tracks cannot be compared place by place.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unlike {
+    /// They move other axes.
+    #[error("one moves {0}, the other {1}")]
+    Axes(String, String),
+    /// They do not have the same paths.
+    #[error("the one has {0} paths between its rapids, the other {1}")]
+    Runs(usize, usize),
+    /// A path of the reference has nothing in it.
+    #[error("one of its paths has no length")]
+    Empty,
+}
 
 fn runs(track: &Track) -> Vec<Range<usize>> {
     let run = |event: &Event| match event {
@@ -84,15 +100,28 @@ fn nearest(
     }
 }
 
-/// The deviation of each place of `track` from `reference` over the way, mm; none where they do not have the same runs.
-/// `cutter` is the curve of X Y Z A whose radius counts.
-pub fn deviation(track: &Track, reference: &Track, cutter: Option<&LogCurve>) -> Option<Vec<[f64; 2]>> {
+/// The deviation of each place of `track` from `reference` over the way, mm. `cutter` is the curve of X Y Z A whose radius counts.
+///
+/// # Errors
+/// They do not have the same axes or the same runs.
+pub fn deviation(
+    track: &Track,
+    reference: &Track,
+    cutter: Option<&LogCurve>,
+) -> Result<Vec<[f64; 2]>, Unlike> {
     let (own, others) = (runs(track), runs(reference));
-    if own.len() != others.len() || track.axes != reference.axes {
-        return None;
+    if track.axes != reference.axes {
+        let names = |track: &Track| {
+            let names: Vec<String> = track.axes.as_slice().iter().map(|(axis, _)| axis.to_string()).collect();
+            names.join(" ")
+        };
+        return Err(Unlike::Axes(names(track), names(reference)));
+    }
+    if own.len() != others.len() {
+        return Err(Unlike::Runs(own.len(), others.len()));
     }
     let total: usize = track.pieces.len().max(1);
-    let places = PLACES.map(|n| n.min(MOST_PLACES / total).max(1));
+    let places = PLACES.map(|n| n.min(MOST_PLACES / total).max(FEWEST));
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut way = 0.0;
     for (range, other) in own.into_iter().zip(others) {
@@ -100,7 +129,7 @@ pub fn deviation(track: &Track, reference: &Track, cutter: Option<&LogCurve>) ->
             points.push([f64::NAN; 2]);
         }
         let pieces = &reference.pieces[other];
-        let (mut at, mut u) = (0, pieces.first()?.from);
+        let (mut at, mut u) = (0, pieces.first().ok_or(Unlike::Empty)?.from);
         let mut last: Option<Position> = None;
         for piece in &track.pieces[range] {
             let count = if piece.curve.is_line() { places[1] } else { places[0] };
@@ -114,19 +143,22 @@ pub fn deviation(track: &Track, reference: &Track, cutter: Option<&LogCurve>) ->
             }
         }
     }
-    Some(points)
+    Ok(points)
 }
 
 /// The figure of it.
-pub fn figure(track: &Track, reference: &Track, cutter: Option<&LogCurve>) -> Option<Figure> {
+///
+/// # Errors
+/// As [`deviation`].
+pub fn figure(track: &Track, reference: &Track, cutter: Option<&LogCurve>) -> Result<Figure, Unlike> {
     let points = deviation(track, reference, cutter)?;
     let mut figure = Figure::new(
         "deviation",
         "Deviation from what was asked, at the surface",
         ["way in what F counts, mm", "mm"],
     );
-    figure.add("deviation", Style::Line, points);
-    (!figure.is_empty()).then_some(figure)
+    figure.add("deviation", Style::Line, thinned(&points));
+    if figure.is_empty() { Err(Unlike::Empty) } else { Ok(figure) }
 }
 
 #[cfg(test)]
@@ -175,6 +207,8 @@ mod tests {
         let one = track(&[[0.0, 0.0], [4.0, 0.0]]);
         let mut two = one.clone();
         two.events.push(Event::Run(0..1));
-        assert!(deviation(&two, &one, None).is_none());
+        assert_eq!(deviation(&two, &one, None), Err(Unlike::Runs(2, 1)));
+        two.axes = Axes::with_direction();
+        assert!(matches!(deviation(&two, &one, None), Err(Unlike::Axes(..))));
     }
 }

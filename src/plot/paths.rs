@@ -1,5 +1,6 @@
 //! What a track looks like: its projections, the rotary axes against X, control polygons and block ends.
 
+use super::thin::thinned;
 use super::{Figure, Series, Style};
 use crate::geom::elementary::{acos, cos, sin};
 use crate::geom::logcurve::LogCurve;
@@ -8,8 +9,9 @@ use crate::simulate::shape::Shape;
 use crate::simulate::track::{Event, Track};
 use crate::units::{DEGREES, Kind, MAX_AXES, Position};
 
-/// The most points of a path that are drawn.
-const MOST_POINTS: usize = 20_000;
+/// The most points that curves are drawn by, and the fewest of each.
+const MOST_POINTS: usize = 2_000_000;
+const FEWEST: usize = 8;
 
 /// The most block ends and control points that are drawn.
 const MOST_DOTS: usize = 2_000;
@@ -39,14 +41,12 @@ fn parts(piece: &Piece<Shape>, most: usize) -> usize {
             }
         }
     }
-    ((PARTS as f64 * turn / TURN).ceil() as usize).clamp(8, 1024).min(most)
+    ((PARTS as f64 * turn / TURN).ceil() as usize).clamp(FEWEST, 1024).min(most)
 }
 
 /// Positions along a track; a gap between runs is a position of NaN.
 pub fn samples(track: &Track) -> Vec<Position> {
-    let most = (MOST_POINTS / track.pieces.len().max(1)).max(1);
-    // Where even the ends are too many, every so many pieces.
-    let stride = track.pieces.len().div_ceil(MOST_POINTS).max(1);
+    let most = (MOST_POINTS / track.pieces.len().max(1)).max(FEWEST);
     let mut points = Vec::new();
     for event in &track.events {
         let Event::Run(range) = event else { continue };
@@ -57,9 +57,6 @@ pub fn samples(track: &Track) -> Vec<Position> {
             let piece = &track.pieces[i];
             if i == range.start {
                 points.push(piece.curve.at(piece.from));
-            }
-            if (i - range.start) % stride != 0 && i + 1 != range.end {
-                continue;
             }
             let count = parts(piece, most);
             for k in 1..=count {
@@ -87,7 +84,7 @@ impl View {
         let mut figure = Figure::new(self.id, self.title.clone(), [&self.labels[0], &self.labels[1]]);
         figure.equal = self.equal;
         let points = |positions: &[Position]| positions.iter().map(|p| (self.of)(p)).collect::<Vec<_>>();
-        figure.add("path", Style::Line, points(path));
+        figure.add("path", Style::Line, thinned(&points(path)));
         if blocks {
             let corners: usize = track.polygons.iter().map(Vec::len).sum();
             if corners <= MOST_DOTS {
@@ -138,6 +135,22 @@ fn frame([x, y, z]: [&[f64; 2]; 3]) -> Option<Vec<[f64; 2]>> {
     let known = edges.iter().flatten().all(|x| x.is_finite());
     let lines = edges.chunks(2).flat_map(|edge| [spatial(edge[0]), spatial(edge[1]), [f64::NAN; 2]]);
     known.then(|| lines.collect())
+}
+
+/// What is too much for figures: what [`figures`] leave out.
+pub fn left_out(track: &Track) -> Vec<String> {
+    let corners: usize = track.polygons.iter().map(Vec::len).sum();
+    let mut told = Vec::new();
+    if MOST_DOTS < corners {
+        told.push(format!(
+            "control polygons are not drawn: they have {corners} points, and {MOST_DOTS} can be seen"
+        ));
+    }
+    if MOST_DOTS < track.pieces.len() {
+        let blocks = track.pieces.len();
+        told.push(format!("block ends are not drawn: there are {blocks}, and {MOST_DOTS} can be seen"));
+    }
+    told
 }
 
 /// All figures of a path. `cutter` is the flute's curve where there is one: its path is also shown on the cutter.
@@ -219,20 +232,19 @@ pub fn figures(track: &Track, cutter: Option<&LogCurve>) -> Vec<Figure> {
             }
             // Seen on the cutter A turns too.
             let turn = (end[3] - start[3]).abs() / DEGREES;
-            let count = ((turn / TURN).ceil() as usize).clamp(PARTS, MOST_POINTS);
+            let most = (MOST_POINTS / track.pieces.len().max(1)).max(FEWEST);
+            let count = ((turn / TURN).ceil() as usize).max(PARTS).min(most);
             let at =
                 |k: usize| piece.curve.at(piece.from + (piece.to - piece.from) * k as f64 / count as f64);
             flutes.extend((0..=count).map(at));
         }
-        if flutes.len() <= 4 * MOST_POINTS {
-            let mut figure = on_cutter.figure(track, &flutes, false);
-            let ends = extent(&flutes, 0);
-            let ring = |x: f64| (0..=120).map(move |i| [x, 0.0, 0.0, 3.0 * f64::from(i), 0.0, 0.0]);
-            let rings = ring(ends[0]).map(|p| (on_cutter.of)(&p)).chain([[f64::NAN; 2]]);
-            let points = rings.chain(ring(ends[1]).map(|p| (on_cutter.of)(&p))).collect();
-            figure.series.push(Series { name: "its ends".to_owned(), style: Style::Thin, points });
-            figures.push(figure);
-        }
+        let mut figure = on_cutter.figure(track, &flutes, false);
+        let ends = extent(&flutes, 0);
+        let ring = |x: f64| (0..=120).map(move |i| [x, 0.0, 0.0, 3.0 * f64::from(i), 0.0, 0.0]);
+        let rings = ring(ends[0]).map(|p| (on_cutter.of)(&p)).chain([[f64::NAN; 2]]);
+        let points = rings.chain(ring(ends[1]).map(|p| (on_cutter.of)(&p))).collect();
+        figure.series.push(Series { name: "its ends".to_owned(), style: Style::Thin, points });
+        figures.push(figure);
     }
     figures.retain(|figure| !figure.is_empty());
     figures

@@ -84,7 +84,7 @@ impl Points {
         if points.is_empty() {
             return Err(PointsError::Nothing);
         }
-        Ok(Points { axes, points, deviation })
+        Ok(Points { axes, points, deviation: deviation + intent.input_error })
     }
 
     /// `n`, `curve` and the axes, rotary ones with their unit.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `bounds` | what is stated of lines, against the distance that is there |
 //! | `cl` | CL data: what its statements mean, as it stands in the program of every machine |
+//! | `curves` | curve files: how long their paths are, or why they are refused |
 //! | `damaged` | the remarks at which an operator restarts a program, each with every fault |
 //! | `generated` | random inputs on random machines, none of which compile refuses by its own proof |
 //! | `left` | what a program leaves behind on the control, at tool changes and at its end, and what its remarks are made of |
@@ -12,6 +13,7 @@
 
 mod bounds;
 mod cl;
+mod curves;
 mod damaged;
 mod generated;
 mod left;

@@ -1,6 +1,6 @@
 //! Damaged files: what is said of them, and that nothing panics.
 
-use super::writers::{WRITERS, drawing, dxf, entity, exchange, iges, model, step};
+use super::writers::{WRITERS, drawing, dxf, entity, exchange, iges, model, step, with_blocks};
 use super::{PROCESS, fixtures, found, sample};
 use crate::robust::{edits, mutated};
 use crate::support::sources_with;
@@ -43,6 +43,19 @@ fn damaged_drawings() {
     assert_eq!(one("CIRCLE 10=0 20=0 40=0"), ["radius-range"]);
     assert_eq!(one("CIRCLE 10=0 20=0 40=1 210=0 220=0 230=0"), ["normal-zero"]);
     assert_eq!(one("POLYLINE 66=1 70=0"), ["seqend-missing"]);
+    assert_eq!(one("ARC 10=0 20=0 40=1 50=30 51=30"), ["turn-unclear"]);
+    assert_eq!(one("ELLIPSE 10=0 20=0 11=1 21=0 40=1 41=0 42=6.2832"), ["turn-unclear"]);
+    let blocks = |blocks: &[(&str, &str)], text: &str| ids("c.dxf", &with_blocks(blocks, &entity(text)));
+    assert_eq!(blocks(&[], "INSERT 2=B 10=0 20=0"), ["block-unknown"]);
+    assert_eq!(blocks(&[("B", "CIRCLE 10=0 20=0 40=1")], "INSERT 2=B 10=0 20=0 41=0"), ["scale-zero"]);
+    let circle = [("B", "INSERT 2=C 10=1 20=0"), ("C", "INSERT 2=B 10=0 20=1")];
+    assert_eq!(blocks(&circle, "INSERT 2=B 10=0 20=0"), ["block-circular"]);
+    assert_eq!(blocks(&[("B", "LINE 10=0 20=0 11=1 21=0"); 2], "INSERT 2=B 10=0 20=0"), ["block-twice"]);
+    assert_eq!(blocks(&[("B", "HELIX 40=1")], "INSERT 2=B 10=0 20=0"), ["curve-unread"]);
+    // What is wrong in a block that nothing inserts is no part of the drawing.
+    assert_eq!(blocks(&[("B", "HELIX 40=1")], "LINE 10=0 20=0 11=1 21=0"), [""; 0]);
+    let many = [("B", "LINE 10=0 20=0 11=1 21=0"), ("C", "INSERT 2=B 10=0 20=0 70=9999 71=99 44=1 45=1")];
+    assert_eq!(blocks(&many, "INSERT 2=C 10=0 20=0 70=99 44=1"), ["blocks-too-many"]);
     // Whatever its last entity lacks, that a part is missing is what there is to say.
     let half = text.find(" 41\n").expect("weights");
     assert_eq!(ids("c.dxf", &text[..half]), ["file-truncated"]);
@@ -65,7 +78,10 @@ fn damaged_iges() {
     assert_eq!(ids("c.igs", "hello\n"), ["section-unknown"]);
     assert_eq!(ids("c.igs", ""), ["file-truncated"]);
     let one = |kind, form, text: &str| ids("c.igs", &model(&[(kind, form, 0, "00000000", text.to_owned())]));
-    assert_eq!(one(104, 1, "1.,0.,1.,0.,0.,-1.,0.,1.,0.,0.,1."), ["curve-unread"]);
+    assert_eq!(one(104, 1, "1.,0.,1.,0.,0.,-1.,0.,1.,0.,0.,1."), [""; 0]);
+    assert_eq!(one(104, 1, "1.,0.,1.,0.,0.,-1.,0.,1.,0.,0.,1.1"), ["arc-misfit"]);
+    assert_eq!(one(104, 2, "1.,0.,-1.,0.,0.,-1.,0.,1.,0.,2.,1.7320508"), ["curve-unread"]);
+    assert_eq!(one(104, 3, "1.,0.,0.,0.,-1.,0.,0.,0.,0.,1.,1."), ["curve-unread"]);
     assert_eq!(one(100, 0, "0.,0.,0.,5.,0.,0.,6."), ["arc-misfit"]);
     assert_eq!(one(102, 0, "1,9"), ["reference-unknown"]);
     assert_eq!(one(102, 0, "1,1"), [""; 0], "a curve that is a part of itself is no curve");

@@ -1,6 +1,6 @@
 //! Every kind of curve that is read, its places from a closed form.
 
-use super::writers::{drawing, entity, exchange, model};
+use super::writers::{drawing, entity, exchange, model, with_blocks};
 use super::{curves, found};
 use approx::assert_relative_eq;
 use splinepost::front::curves::Path;
@@ -123,11 +123,11 @@ fn what_is_no_curve_is_told_of_once_a_kind() {
         entity("POLYLINE 66=1 70=64"),
         entity("VERTEX 10=0 20=0"),
         entity("SEQEND 8=0"),
-        entity("INSERT 66=1 2=B"),
+        entity("INSERT 66=1 2=B 10=0 20=0"),
         entity("ATTRIB 1=x"),
         entity("SEQEND 8=0"),
     ];
-    let found = found("c.dxf", &drawing(&text.concat())).unwrap();
+    let found = found("c.dxf", &with_blocks(&[("B", "POINT 10=0 20=0")], &text.concat())).unwrap();
     assert_eq!(found.curves.len(), 2);
     let told: Vec<&str> = found.warnings.0.iter().map(|d| d.message.as_str()).collect();
     assert_eq!(
@@ -137,11 +137,87 @@ fn what_is_no_curve_is_told_of_once_a_kind() {
             "TEXT is left out, 2 times",
             "LINE in paper space is left out",
             "POLYLINE that is a mesh is left out",
-            "INSERT, and with it the curves of its block, is left out",
+            "POINT is left out",
             "ATTRIB is left out",
             "LINE without length is left out",
         ]
     );
+}
+
+/// A quarter circle twice as wide and turned, mirrored, in an array and in another block.
+#[test]
+fn blocks_of_drawings() {
+    let quarter = "ARC 10=1 20=1 30=0 40=2 50=0 51=90";
+    let read = |blocks: &[(&str, &str)], insert: &str| curves("c.dxf", &with_blocks(blocks, &entity(insert)));
+    // x is doubled, then all is turned: the centre (1, 1) comes to (11 − 1, 18 + 2), (2 cos t, 2 sin t) to (−2 sin t, 4 cos t).
+    let all = read(&[("B", quarter)], "INSERT 2=b 10=11 20=18 41=2 50=90");
+    runs(&all[0].path, [10., 24., 0.], [8., 20., 0.], |p| {
+        let (x, y) = ((p[0] - 10.0) / 2.0, (p[1] - 20.0) / 4.0);
+        x * x + y * y - 1.0
+    });
+    // Mirrored, it runs clockwise.
+    let all = read(&[("B", quarter)], "INSERT 2=B 10=0 20=0 41=-1");
+    runs(&all[0].path, [-3., 1., 0.], [-1., 3., 0.], circle([-1., 1., 0.], 2.0));
+    let all = read(&[("B", quarter)], "INSERT 2=B 10=0 20=0 70=3 71=2 44=10 45=-10 41=1");
+    let starts: Vec<[f64; 3]> = all.iter().map(|curve| curve.path.start()).collect();
+    let right = [[3., 1.], [13., 1.], [23., 1.], [3., -9.], [13., -9.], [23., -9.]];
+    assert_eq!(starts, right.map(|[x, y]| [x, y, 0.]));
+    // Shifted by 5 within a block that is shifted by 100.
+    let all = read(&[("B", quarter), ("C", "INSERT 2=B 10=5 20=0")], "INSERT 2=C 10=100 20=0");
+    runs(&all[0].path, [108., 1., 0.], [106., 3., 0.], circle([106., 1., 0.], 2.0));
+}
+
+/// Whole turns as files print them, and what is next to none.
+#[test]
+fn turns_are_told_before_they_are_reduced() {
+    let ellipse = |end: &str| one(&format!("ELLIPSE 10=0 20=0 30=0 11=4 21=0 31=0 40=0.5 41=0 42={end}"));
+    for end in ["6.28319", "6.2831855", "6.28318530718", "6.283185"] {
+        let whole = ellipse(end);
+        assert!(whole.start() == whole.end() && places(&whole).len() == 17, "{end}");
+    }
+    assert_eq!(one("ARC 10=0 20=0 40=1 50=0 51=360.0001").start(), [1., 0., 0.]);
+    assert_eq!(places(&one("ARC 10=0 20=0 40=1 50=30 51=390.0001")).len(), 17);
+    // Five millionths of a turn are that, not a whole one.
+    let short = one("ARC 10=0 20=0 40=1000 50=0 51=0.0001");
+    let size = short.end()[1];
+    assert!((size - 1.0e-4 * std::f64::consts::PI / 0.18).abs() < 1e-9, "{size}");
+    let frame =
+        "#1=CARTESIAN_POINT('',(0.,0.,0.));\n#2=AXIS2_PLACEMENT_3D('',#1,$,$);\n#3=CIRCLE('',#2,10.);\n";
+    let step = |trim: &str| found("c.stp", &exchange(&format!("{frame}#9=TRIMMED_CURVE('',#3,{trim});\n")));
+    let whole = step("(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(6.28318530718)),.T.,.PARAMETER.").unwrap();
+    assert_eq!(places(&whole.curves[0].path).len(), 17);
+    // 6.28318530718 is 4e-13 above 2π, 4e-12 mm at radius 10.
+    assert!((whole.curves[0].error - 4.1e-12).abs() < 0.2e-12, "{}", whole.curves[0].error);
+    let none = step("(PARAMETER_VALUE(1.)),(PARAMETER_VALUE(1.)),.T.,.PARAMETER.").unwrap_err();
+    assert_eq!(none.0[0].id, "turn-unclear");
+    // The file of the writer tells 1e-7 apart.
+    let iges =
+        |end: &str| found("c.igs", &model(&[(100, 0, 0, "00000000", format!("0.,0.,0.,5.,0.,{end}"))]));
+    assert_eq!(places(&iges("5.,1.E-8").unwrap().curves[0].path).len(), 17);
+    for end in ["5.,1.E-6", "5.,-1.E-6"] {
+        assert_eq!(iges(end).unwrap_err().0[0].id, "turn-unclear", "{end}");
+    }
+    assert_eq!(iges("5.,1.E-3").unwrap().curves[0].path.end(), [5., 1e-3, 0.]);
+}
+
+/// Arcs that are straight, and an arc whose centre is two thousand kilometres away.
+#[test]
+fn arcs_that_are_nearly_straight() {
+    let read = |bulge: &str, long: &str| {
+        let text = entity(&format!("LWPOLYLINE 90=2 70=0 10=0 20=0 42={bulge} 10={long} 20=0"));
+        curves("c.dxf", &drawing(&text)).remove(0)
+    };
+    let line = read("1e-6", "30");
+    assert!(matches!(line.path, Path::Lines(..)));
+    // b c/2
+    assert_relative_eq!(line.error, 1.5e-5, epsilon = 1e-14);
+    for bulge in ["1e-13", "1e-300", "-1e-320"] {
+        assert!(matches!(read(bulge, "30").path, Path::Lines(..)), "{bulge}");
+    }
+    let far = read("1e-7", "8000");
+    let Path::Pieces(pieces) = &far.path else { panic!("{far:?}") };
+    let top = pieces[0].eval(0.5);
+    assert!((top[0] - 4000.0).abs() < 1e-9 && (top[1] + 4.0e-4).abs() < 1e-12, "{top:?}");
 }
 
 #[test]

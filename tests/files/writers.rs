@@ -14,6 +14,24 @@ pub(super) fn drawing(entities: &str) -> String {
     )
 }
 
+/// A drawing with blocks of a name and one entity each.
+pub(super) fn with_blocks(blocks: &[(&str, &str)], entities: &str) -> String {
+    let block = |(name, text): &(&str, &str)| {
+        format!(
+            "{}{}{}",
+            entity(&format!("BLOCK 8=0 2={name} 70=0 10=0 20=0")),
+            entity(text),
+            entity("ENDBLK 8=0")
+        )
+    };
+    let section = format!(
+        "  0\nSECTION\n  2\nBLOCKS\n{}  0\nENDSEC\n",
+        blocks.iter().map(block).collect::<Vec<_>>().concat()
+    );
+    let text = drawing(entities);
+    text.replacen("  0\nSECTION\n  2\nENTITIES", &format!("{section}  0\nSECTION\n  2\nENTITIES"), 1)
+}
+
 /// Pairs from `LINE 10=1 20=2`: what stands first has code 0.
 pub(super) fn entity(text: &str) -> String {
     let mut out = String::new();

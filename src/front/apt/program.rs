@@ -327,6 +327,14 @@ impl Builder {
         let all = Axes::with_direction();
         let axes = Axes::new(&all.as_slice()[..self.stride()]).ok_or_else(Diagnostics::new)?;
         let program = Program { name, number: 0, axes, steps: self.steps };
-        Ok(Intent { program, tolerance: None, name_span, radius: None, tilt_error: Bound::ZERO, warnings })
+        Ok(Intent {
+            program,
+            tolerance: None,
+            name_span,
+            radius: None,
+            tilt_error: Bound::ZERO,
+            input_error: 0.0,
+            warnings,
+        })
     }
 }

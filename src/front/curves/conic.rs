@@ -14,6 +14,7 @@
 //! (Piegl and Tiller, *The NURBS Book*, 7.3), which no affine map changes.
 
 use super::Point;
+use super::turn::Turn;
 use crate::geom::arc::{Arc, Plane, Sense};
 use crate::geom::bezier::Bezier;
 use crate::geom::elementary::{cos, sin};
@@ -39,6 +40,8 @@ pub struct Conic<P = Point> {
     pub from: f64,
     /// The angle at which it ends, which is greater.
     pub to: f64,
+    /// What `to` may differ from the angle that is stated, where a whole turn was made of it.
+    pub error: f64,
     /// Where it starts.
     pub start: P,
     /// Where it ends; where it starts, for a whole turn.
@@ -66,19 +69,40 @@ pub(super) fn unit(a: &Point) -> Option<Point> {
     (0.0 < size && size.is_finite()).then(|| a.map(|x| x / size))
 }
 
-/// How far to turn from one angle to another the positive way, more than 0 and a turn at most.
-pub(super) fn sweep(from: f64, to: f64) -> f64 {
-    let turned = (to - from).rem_euclid(TURN);
-    if turned == 0.0 { TURN } else { turned }
-}
-
 impl Conic {
-    /// The part from one angle to a greater one.
-    pub(super) fn new(center: Point, u: Point, v: Point, from: f64, to: f64) -> Conic {
+    /// The part that starts at an angle.
+    pub(super) fn new(center: Point, u: Point, v: Point, from: f64, turn: Turn) -> Conic {
         let start = at(&center, &u, &v, from, 1.0);
+        let to = from + turn.by;
         // A whole turn ends where it starts to the last bit.
-        let end = if TURN - 1e-9 <= to - from { start } else { at(&center, &u, &v, to, 1.0) };
-        Conic { center, u, v, from, to, start, end }
+        let end = if turn.is_whole() { start } else { at(&center, &u, &v, to, 1.0) };
+        Conic { center, u, v, from, to, error: turn.error, start, end }
+    }
+
+    /// The place at an angle.
+    pub(super) fn place(center: &Point, u: &Point, v: &Point, angle: f64) -> Point {
+        at(center, u, v, angle, 1.0)
+    }
+
+    /// Whether it is a whole turn: no other part is within some roundings of one.
+    fn is_whole(&self) -> bool {
+        TURN - 1e-9 <= self.to - self.from
+    }
+
+    /// The same part with its ends at these places, which are very near to them; a whole turn has the first of them.
+    pub(super) fn with_ends(self, start: Point, end: Point) -> Conic {
+        Conic { start, end: if self.is_whole() { start } else { end }, ..self }
+    }
+
+    /// How far its end may be from the stated one: what [`Conic::error`] makes of the greater half axis a,
+    ///
+    /// ```text
+    /// a² = (u² + v² + √((u² − v²)² + 4(u·v)²))/2
+    /// ```
+    pub(super) fn apart(&self) -> f64 {
+        let (uu, vv, uv) = (dot(&self.u, &self.u), dot(&self.v, &self.v), dot(&self.u, &self.v));
+        let greater = 0.5 * (uu + vv + ((uu - vv) * (uu - vv) + 4.0 * uv * uv).sqrt());
+        self.error * greater.sqrt()
     }
 
     /// The angle at which a place lies, where half axes are square to each other.
@@ -115,15 +139,10 @@ impl Conic {
             v: axis(&self.v),
             from: self.from,
             to: self.to,
+            error: self.error,
             start: map(&self.start),
             end: map(&self.end),
         }
-    }
-
-    /// The corners of a box round the whole ellipse.
-    pub(super) fn hull(&self) -> [Point; 4] {
-        let corner = |s: f64, t: f64| std::array::from_fn(|i| self.center[i] + s * self.u[i] + t * self.v[i]);
-        [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)]
     }
 
     /// Whether it has a length: ends that are one place are so after a whole turn only.
@@ -181,9 +200,26 @@ mod tests {
         conic.mapped(&|p: &Point| [p[0], p[1], p[2], 0.0, 0.0, 0.0])
     }
 
+    fn turn(by: f64) -> Turn {
+        Turn { by, error: 0.0 }
+    }
+
+    #[test]
+    fn what_a_whole_turn_may_be_off_is_that_of_the_greater_axis() {
+        let turn = Turn { by: TURN, error: 1e-6 };
+        let round = Conic::new([0.0; 3], [3.0, 0.0, 0.0], [0.0, 5.0, 0.0], 0.0, turn);
+        assert_eq!((round.apart(), round.start), (5e-6, round.end));
+        // Half axes that are not square to each other: the ellipse of 3 and 5 under a shear has those of the shear.
+        let shear = round.mapped(&|p: &Point| [p[0] + p[1], p[1], p[2]]);
+        // The greatest singular value of [3 5; 0 5]: its squares add up to 59 and multiply to 225.
+        let greatest = 0.5 * (59.0 + (59.0f64 * 59.0 - 900.0).sqrt());
+        assert!((shear.apart() - 1e-6 * greatest.sqrt()).abs() < 1e-19);
+        assert_eq!(round.with_ends([1.0; 3], [2.0; 3]).end, [1.0; 3]);
+    }
+
     #[test]
     fn pieces_lie_on_the_ellipse_in_order() {
-        let conic = Conic::new([1.0, 2.0, 3.0], [4.0, 0.0, 1.0], [0.0, 2.0, 0.0], 0.3, 5.0);
+        let conic = Conic::new([1.0, 2.0, 3.0], [4.0, 0.0, 1.0], [0.0, 2.0, 0.0], 0.3, turn(4.7));
         for conic in [conic, conic.reversed()] {
             let pieces = placed(&conic).pieces();
             assert_eq!(pieces.len(), 3);
@@ -202,17 +238,17 @@ mod tests {
 
     #[test]
     fn circles_are_arcs_in_planes_of_the_machine() {
-        let quarter = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 5.0, 0.0], 0.0, 0.25 * TURN);
+        let quarter = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 5.0, 0.0], 0.0, turn(0.25 * TURN));
         let arc = placed(&quarter).arc().unwrap();
         assert_eq!((arc.plane(), arc.sense()), (Some(Plane::Xy), Sense::CounterClockwise));
         assert!((arc.sweep() - 0.25 * TURN).abs() < 1e-15);
         let back = placed(&quarter.reversed()).arc().unwrap();
         assert_eq!((back.sense(), back.start()), (Sense::Clockwise, arc.end()));
-        let full = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 0.0, 5.0], 1.0, 1.0 + TURN);
+        let full = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 0.0, 5.0], 1.0, Turn::WHOLE);
         let full = placed(&full).arc().unwrap();
         // From X to Z about Y is clockwise in the plane Z X.
         assert_eq!((full.plane(), full.sense(), full.is_full()), (Some(Plane::Zx), Sense::Clockwise, true));
-        let tilted = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 4.0, 3.0], 0.0, 1.0);
+        let tilted = Conic::new([0.0; 3], [5.0, 0.0, 0.0], [0.0, 4.0, 3.0], 0.0, turn(1.0));
         assert!(placed(&tilted).arc().is_none());
     }
 }

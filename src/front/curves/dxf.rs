@@ -1,4 +1,4 @@
-//! DXF, the ASCII form: what a drawing holds in its section ENTITIES. `grammar/dxf.ebnf` has the form.
+//! DXF, the ASCII form: what a drawing holds in its section ENTITIES, and in the blocks that are inserted there. `grammar/dxf.ebnf` has the form.
 //!
 //! A file is pairs of lines, a group code and a value; a pair with code 0 begins an entity, and what follows belongs to it:
 //!
@@ -24,12 +24,14 @@
 //!
 //! Colour, line type, width and thickness shape no path. Layers do not choose: what stands on several is told of.
 
+mod blocks;
 mod entities;
 mod tags;
 
-use super::{LeftOut, MOST_ERRORS, Read, Unit};
+use super::{MOST_ERRORS, Read, Unit};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceId, Span};
+use blocks::{Block, Insert, Item, Whole, key};
 use entities::Polyline;
 use std::collections::BTreeMap;
 use tags::{Group, Groups};
@@ -57,20 +59,17 @@ const UNITS: &[(&str, f64)] = &[
 /// Reads a file.
 pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
     let mut reader = Reader {
-        read: Read {
-            curves: Vec::new(),
-            unit: Unit::Unknown("this drawing does not say its units".to_owned(), None),
-            left_out: LeftOut::default(),
-            warnings: Diagnostics::new(),
-        },
-        errors: Diagnostics::new(),
+        unit: Unit::Unknown("this drawing does not say its units".to_owned(), None),
         section: "",
         entities: false,
         open: None,
-        layers: BTreeMap::new(),
+        items: Vec::new(),
+        blocks: BTreeMap::new(),
+        block: None,
     };
     let mut groups = Groups::new(text, id);
     let mut ended = false;
+    let mut wrong = 0;
     while let Some(group) = groups.next()? {
         if group.name == "EOF" {
             ended = true;
@@ -81,47 +80,55 @@ pub(super) fn read(text: &str, id: SourceId) -> Result<Read, Diagnostics> {
             break;
         }
         if let Err(error) = reader.group(&group) {
-            reader.errors.push(error);
-            if MOST_ERRORS <= reader.errors.0.len() {
+            // Of a block it counts where the block is inserted.
+            wrong += usize::from(reader.block.is_none());
+            reader.target().push(Item::Wrong(error));
+            if MOST_ERRORS <= wrong {
                 break;
             }
         }
     }
-    if !ended && reader.errors.0.len() < MOST_ERRORS {
+    let Reader { unit, entities, items, blocks, .. } = reader;
+    let whole = Whole::of(&items, &blocks);
+    let mut errors = Diagnostics(whole.errors);
+    if !ended && wrong < MOST_ERRORS {
         let end = Span::new(id, text.trim_end().len()..text.trim_end().len());
         let message = "the file ends before its EOF: a part of it is missing";
-        reader.errors.push(Diagnostic::error("file-truncated", message).at(end, ""));
+        errors.push(Diagnostic::error("file-truncated", message).at(end, ""));
     }
-    if !reader.entities && reader.errors.0.is_empty() {
+    if !entities && errors.0.is_empty() {
         let first = Span::new(id, 0..0);
         let message = "this drawing has no section ENTITIES";
-        reader.errors.push(Diagnostic::error("entities-missing", message).at(first, ""));
+        errors.push(Diagnostic::error("entities-missing", message).at(first, ""));
     }
-    reader.errors.into_result()?;
-    let mut read = reader.read;
-    if 1 < reader.layers.len() {
+    errors.0.truncate(MOST_ERRORS);
+    let mut warnings = errors.into_result()?;
+    if 1 < whole.layers.len() {
         let names: Vec<String> =
-            reader.layers.iter().map(|(name, (count, _))| format!("{name} ({count})")).collect();
+            whole.layers.iter().map(|(name, (count, _))| format!("{name} ({count})")).collect();
         let message = format!("curves of {} layers are run alike: {}", names.len(), names.join(", "));
         let mut warning = Diagnostic::warning("layers-alike", message);
-        if let Some((_, span)) = reader.layers.values().min_by_key(|(_, span)| span.start) {
+        if let Some((_, span)) = whole.layers.values().min_by_key(|(_, span)| span.start) {
             warning = warning.at(*span, "");
         }
-        read.warnings.push(warning.hint("where some of them are no path, export the layer that is one"));
+        warnings.push(warning.hint("where some of them are no path, export the layer that is one"));
     }
-    Ok(read)
+    Ok(Read { curves: whole.curves, unit, left_out: whole.left_out, warnings })
 }
 
 struct Reader<'t> {
-    read: Read,
-    errors: Diagnostics,
+    unit: Unit,
     section: &'t str,
     /// Whether there was a section ENTITIES.
     entities: bool,
-    /// A POLYLINE whose vertices follow.
-    open: Option<Polyline>,
-    /// How many curves each layer has, and where the first stands.
-    layers: BTreeMap<&'t str, (usize, Span)>,
+    /// A POLYLINE whose vertices follow, and its layer.
+    open: Option<(Polyline, &'t str)>,
+    /// What stands in the section ENTITIES.
+    items: Vec<Item<'t>>,
+    /// The blocks by [`key`].
+    blocks: BTreeMap<String, Block<'t>>,
+    /// The block that is open.
+    block: Option<Block<'t>>,
 }
 
 impl<'t> Reader<'t> {
@@ -135,13 +142,49 @@ impl<'t> Reader<'t> {
                 }
             }
             "ENDSEC" => {
+                let ended = self.polyline_ended();
                 self.section = "";
-                return self.polyline_ended();
+                self.block_ended();
+                return ended;
             }
-            _ if self.section == "ENTITIES" => return self.entity(group),
+            "BLOCK" if self.section == "BLOCKS" => {
+                let ended = self.polyline_ended();
+                self.block_ended();
+                self.block = Some(Block::new(group));
+                return ended;
+            }
+            "ENDBLK" => {
+                let ended = self.polyline_ended();
+                if let Err(error) = ended {
+                    self.target().push(Item::Wrong(error));
+                }
+                self.block_ended();
+            }
+            _ if self.section == "ENTITIES" || self.block.is_some() => return self.entity(group),
             _ => {}
         }
         Ok(())
+    }
+
+    /// Where items go to: the block that is open, or the drawing.
+    fn target(&mut self) -> &mut Vec<Item<'t>> {
+        match &mut self.block {
+            Some(block) => &mut block.items,
+            None => &mut self.items,
+        }
+    }
+
+    fn block_ended(&mut self) {
+        if let Some(mut block) = self.block.take() {
+            if let Some(twin) = self.blocks.get_mut(&key(block.name)) {
+                // Which of them an INSERT means nobody can say.
+                let message = format!("the block `{}` is there twice", block.name);
+                twin.items.push(Item::Wrong(Diagnostic::error("block-twice", message).at(block.span, "")));
+                return;
+            }
+            block.items.shrink_to_fit();
+            self.blocks.insert(key(block.name), block);
+        }
     }
 
     /// The variables of the header: each is a pair 9 with its name, and pairs with its value.
@@ -152,7 +195,7 @@ impl<'t> Reader<'t> {
         };
         let units = value("$INSUNITS").filter(|tag| tag.value != "0");
         let measurement = value("$MEASUREMENT");
-        self.read.unit = match (units, measurement) {
+        self.unit = match (units, measurement) {
             (Some(tag), _) => match UNITS.iter().find(|(code, _)| *code == tag.value) {
                 Some((_, mm)) => Unit::Stated(*mm),
                 None => {
@@ -173,18 +216,19 @@ impl<'t> Reader<'t> {
     fn entity(&mut self, group: &Group<'t>) -> Result<(), Diagnostic> {
         if group.name == "VERTEX" {
             return match &mut self.open {
-                Some(polyline) => polyline.vertex(group),
+                Some((polyline, _)) => polyline.vertex(group),
                 None => Err(group.error("vertex-alone", "VERTEX outside a POLYLINE")),
             };
         }
         if group.name == "SEQEND" {
             // Attributes of an INSERT end like this too.
-            if let Some(polyline) = self.open.take() {
-                self.read.curves.extend(polyline.curves());
+            if let Some((polyline, layer)) = self.open.take() {
+                self.target().push(Item::Curves(polyline.curves(), layer));
             }
             return Ok(());
         }
         self.polyline_ended()?;
+        let layer = group.text(8).unwrap_or("0");
         let hidden = if group.whole(67)? == Some(1) {
             Some("in paper space")
         } else if group.whole(60)? == Some(1) {
@@ -193,48 +237,42 @@ impl<'t> Reader<'t> {
             None
         };
         if let Some(hidden) = hidden {
-            self.read.left_out.add(&format!("{} {hidden}", group.name), group.head);
+            self.target().push(Item::LeftOut(format!("{} {hidden}", group.name), group.head));
             if group.name == "POLYLINE" {
-                self.open = Some(Polyline::ignored(group));
+                self.open = Some((Polyline::ignored(group), layer));
             }
             return Ok(());
         }
-        match group.name {
-            "LINE" => self.read.curves.push(entities::line(group)?),
-            "ARC" | "CIRCLE" => self.read.curves.push(entities::circle(group)?),
-            "ELLIPSE" => self.read.curves.push(entities::ellipse(group)?),
-            "SPLINE" => self.read.curves.push(entities::spline(group)?),
-            "LWPOLYLINE" => self.read.curves.extend(entities::light_polyline(group)?),
-            "POLYLINE" => match Polyline::new(group)? {
-                Some(polyline) => self.open = Some(polyline),
-                None => {
-                    self.read.left_out.add("POLYLINE that is a mesh", group.head);
-                    self.open = Some(Polyline::ignored(group));
+        let item = match group.name {
+            "LINE" => Item::Curves(vec![entities::line(group)?], layer),
+            "ARC" | "CIRCLE" => Item::Curves(vec![entities::circle(group)?], layer),
+            "ELLIPSE" => Item::Curves(vec![entities::ellipse(group)?], layer),
+            "SPLINE" => Item::Curves(vec![entities::spline(group)?], layer),
+            "LWPOLYLINE" => Item::Curves(entities::light_polyline(group)?, layer),
+            "POLYLINE" => {
+                let polyline = Polyline::new(group)?;
+                let mesh = polyline.is_none();
+                self.open = Some((polyline.unwrap_or_else(|| Polyline::ignored(group)), layer));
+                if !mesh {
                     return Ok(());
                 }
-            },
+                Item::LeftOut("POLYLINE that is a mesh".to_owned(), group.head)
+            }
             "HELIX" => {
                 let message = "HELIX is a curve that is not read";
                 return Err(group.error("curve-unread", message).hint("explode it to a SPLINE"));
             }
-            "INSERT" => {
-                self.read.left_out.add("INSERT, and with it the curves of its block,", group.head);
-                return Ok(());
-            }
-            other => {
-                self.read.left_out.add(other, group.head);
-                return Ok(());
-            }
-        }
-        let layer = group.text(8).unwrap_or("0");
-        self.layers.entry(layer).or_insert((0, group.head)).0 += 1;
+            "INSERT" => Item::Insert(Insert::new(group)?),
+            other => Item::LeftOut(other.to_owned(), group.head),
+        };
+        self.target().push(item);
         Ok(())
     }
 
     /// Something else follows a POLYLINE: its SEQEND is missing.
     fn polyline_ended(&mut self) -> Result<(), Diagnostic> {
         match self.open.take() {
-            Some(polyline) => Err(polyline.unfinished()),
+            Some((polyline, _)) => Err(polyline.unfinished()),
             None => Ok(()),
         }
     }

@@ -179,7 +179,7 @@ pub fn joined(curves: Vec<FileCurve>, order: &Order, meet: f64) -> Joined {
                 } else {
                     joined.bridges = (joined.bridges.0 + 1, joined.bridges.1.max(apart));
                     let bridge = Path::Lines(vec![end, curve.path.start()], Vec::new());
-                    push(&mut run, FileCurve { path: bridge, kind: "line", span: curve.span });
+                    push(&mut run, FileCurve::new(bridge, "line", curve.span));
                 }
             }
             push(&mut run, curve);

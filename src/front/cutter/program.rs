@@ -167,6 +167,7 @@ impl CutterJob {
             name_span: self.name_span,
             radius: None,
             tilt_error: Bound::ZERO,
+            input_error: 0.0,
             warnings: Diagnostics::new(),
         }
     }

@@ -39,6 +39,8 @@ pub(super) struct Shape {
     pub(super) curve: Own,
     /// Where it stands in the file.
     pub(super) span: Span,
+    /// How far it may be from what its file states, mm.
+    pub(super) error: f64,
 }
 
 impl Shape {
@@ -68,7 +70,13 @@ impl Shape {
                     .all(|(i, name)| i < axes.count() && axes.name(i).as_str() == *name);
                 let arc = if spatial { conic.arc().map(Curve::Arc) } else { None };
                 let curve = arc.unwrap_or_else(|| Curve::Polynomial(conic.pieces()));
-                return Placed { curve, start: conic.start, end: conic.end, span: self.span };
+                return Placed {
+                    curve,
+                    start: conic.start,
+                    end: conic.end,
+                    span: self.span,
+                    error: self.error,
+                };
             }
         };
         let (curve, start, end) = match own {
@@ -118,7 +126,7 @@ impl Shape {
             // No kind of curve makes these; arcs of files are placed above.
             curve @ (Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
         };
-        Placed { curve, start, end, span: self.span }
+        Placed { curve, start, end, span: self.span, error: self.error }
     }
 }
 
@@ -174,7 +182,7 @@ impl Reader<'_> {
             return None;
         }
         let span = self.span(head);
-        Some(Shape { axes, at, curve: Own::Curve(curve), span })
+        Some(Shape { axes, at, curve: Own::Curve(curve), span, error: 0.0 })
     }
 
     /// Keys that this kind of curve has no use for.

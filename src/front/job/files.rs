@@ -106,6 +106,7 @@ impl<'s> Reader<'s> {
                 at: at.clone(),
                 curve: own(path, axes.len()),
                 span: curve.span,
+                error: curve.error,
             });
         }
         Some(shapes)

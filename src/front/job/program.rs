@@ -154,6 +154,7 @@ impl Job {
             name_span: self.name_span,
             radius: self.radius,
             tilt_error: Bound::ZERO,
+            input_error: self.curves.iter().map(|placed| placed.error).fold(0.0, f64::max),
             warnings,
         }
     }

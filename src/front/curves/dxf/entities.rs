@@ -1,7 +1,8 @@
 //! Entities that are curves.
 
-use super::super::conic::{Conic, TURN, cross, dot, sweep, unit};
+use super::super::conic::{Conic, TURN, cross, dot, unit};
 use super::super::spline::Stated;
+use super::super::turn::{self, Turn};
 use super::super::{FileCurve, Path, Point};
 use super::tags::Group;
 use crate::diagnostic::Diagnostic;
@@ -12,7 +13,7 @@ use crate::source::Span;
 const SMALL: f64 = 1.0 / 64.0;
 
 /// The coordinates of an entity with a normal.
-struct Own {
+pub(super) struct Own {
     x: Point,
     y: Point,
     z: Point,
@@ -20,7 +21,7 @@ struct Own {
 
 impl Own {
     /// By the arbitrary axis algorithm, from codes 210, 220 and 230.
-    fn of(group: &Group<'_>) -> Result<Own, Diagnostic> {
+    pub(super) fn of(group: &Group<'_>) -> Result<Own, Diagnostic> {
         let normal = [
             group.float(210)?.unwrap_or(0.0),
             group.float(220)?.unwrap_or(0.0),
@@ -33,14 +34,14 @@ impl Own {
         Ok(Own { x, y: cross(&z, &x), z })
     }
 
-    fn vector(&self, [x, y, z]: Point) -> Point {
+    pub(super) fn vector(&self, [x, y, z]: Point) -> Point {
         // Zero is added so that no coordinate is a negative zero.
         std::array::from_fn(|i| x * self.x[i] + y * self.y[i] + z * self.z[i] + 0.0)
     }
 }
 
 fn curve(group: &Group<'_>, kind: &'static str, path: Path) -> FileCurve {
-    FileCurve { path, kind, span: group.head }
+    FileCurve::new(path, kind, group.head)
 }
 
 pub(super) fn line(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
@@ -59,16 +60,15 @@ pub(super) fn circle(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
     let arc = group.name == "ARC";
     let kind = if arc { "ARC" } else { "CIRCLE" };
     let degrees = |x: f64| x * (TURN / 360.0);
-    let (from, to) = if arc {
+    let (from, turn) = if arc {
         let from = group.needed(50, "start angle")?;
-        let turned = (group.needed(51, "end angle")? - from).rem_euclid(360.0);
-        let from = from.rem_euclid(360.0);
-        (degrees(from), degrees(from + if turned == 0.0 { 360.0 } else { turned }))
+        let stated = degrees(group.needed(51, "end angle")? - from);
+        (degrees(from.rem_euclid(360.0)), turn::between_angles(kind, stated, group.head)?)
     } else {
-        (0.0, TURN)
+        (0.0, Turn::WHOLE)
     };
     let (u, v) = (own.vector([radius, 0.0, 0.0]), own.vector([0.0, radius, 0.0]));
-    Ok(curve(group, kind, Path::Conic(Conic::new(center, u, v, from, to))))
+    Ok(curve(group, kind, Path::Conic(Conic::new(center, u, v, from, turn))))
 }
 
 /// Half the greater axis is stated, and what share of it the smaller one has; parameters in radians.
@@ -81,11 +81,10 @@ pub(super) fn ellipse(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
     }
     let v = cross(&own.z, &u).map(|x| ratio * x);
     let from = group.float(41)?.unwrap_or(0.0);
-    let from = from.rem_euclid(TURN);
-    let to = from + sweep(from, group.float(42)?.unwrap_or(TURN));
-    // Whole turns are printed as 6.283185 or so.
-    let to = if TURN - 1e-6 <= to - from { from + TURN } else { to };
-    Ok(curve(group, "ELLIPSE", Path::Conic(Conic::new(center, u, v, from, to))))
+    let stated = group.float(42)?.unwrap_or(TURN) - from;
+    let turn = turn::between_angles("ELLIPSE", stated, group.head)?;
+    let conic = Conic::new(center, u, v, from.rem_euclid(TURN), turn);
+    Ok(curve(group, "ELLIPSE", Path::Conic(conic)))
 }
 
 pub(super) fn spline(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
@@ -102,7 +101,8 @@ pub(super) fn spline(group: &Group<'_>) -> Result<FileCurve, Diagnostic> {
     let degree = (group.needed(71, "degree")?, group.tags.iter().find(|tag| tag.code == 71));
     let degree = (degree.0, degree.1.map_or(group.head, |tag| tag.span));
     let stated = Stated { kind: "SPLINE", span: group.head, degree, knots, weights, points, range: None };
-    Ok(curve(group, "SPLINE", Path::Nurbs(stated.nurbs()?)))
+    let closed = group.whole(70)?.unwrap_or(0) & 1 == 1;
+    Ok(FileCurve { closed, ..curve(group, "SPLINE", Path::Nurbs(stated.nurbs()?)) })
 }
 
 /// A corner of a polyline, and the bulge of what goes on from there: tan(θ/4) of an arc that turns by θ.
@@ -140,7 +140,7 @@ fn polyline(kind: &'static str, span: Span, corners: &[Corner], closed: bool, ow
             points.extend(&more[1..]);
             lines.extend(from);
         }
-        (_, path) => curves.push(FileCurve { path, kind, span }),
+        (_, path) => curves.push(FileCurve::new(path, kind, span)),
     };
     let closing = corners.first().filter(|_| closed);
     for (corner, next) in corners.iter().zip(corners[1.min(corners.len())..].iter().chain(closing)) {
@@ -149,7 +149,8 @@ fn polyline(kind: &'static str, span: Span, corners: &[Corner], closed: bool, ow
             continue;
         }
         let (start, end) = (own.vector(p), own.vector(q));
-        if b == 0.0 {
+        // The chord, 10⁻¹² of its half beside the arc.
+        if b.abs() < 1e-12 {
             add(Path::Lines(vec![start, end], vec![corner.line]));
             continue;
         }
@@ -159,13 +160,15 @@ fn polyline(kind: &'static str, span: Span, corners: &[Corner], closed: bool, ow
         let (ux, uy) = (p[0] - center[0], p[1] - center[1]);
         let side = 1.0f64.copysign(b);
         let (u, v) = ([ux, uy, 0.0], [-side * uy, side * ux, 0.0]);
-        let arc = Conic::new(own.vector(center), own.vector(u), own.vector(v), 0.0, 4.0 * atan(b.abs()));
-        add(Path::Conic(Conic { start, end, ..arc }));
+        // A bulge turns by less than a whole turn, and says so: nothing is reduced.
+        let turn = Turn { by: 4.0 * atan(b.abs()), error: 0.0 };
+        let arc = Conic::new(own.vector(center), own.vector(u), own.vector(v), 0.0, turn);
+        add(Path::Conic(arc.with_ends(start, end)));
     }
     if curves.is_empty() {
         // Told of as a curve without length.
         let places = corners.iter().map(|corner| own.vector(corner.place)).collect();
-        curves.push(FileCurve { path: Path::Lines(places, Vec::new()), kind, span });
+        curves.push(FileCurve::new(Path::Lines(places, Vec::new()), kind, span));
     }
     curves
 }

@@ -63,6 +63,8 @@ pub(super) struct Cards {
     pub(super) unit: Unit,
     /// Whether coordinates are those of a model at another scale, and where that stands.
     pub(super) scale: Option<(f64, Span)>,
+    /// Places nearer than this are one, in units of the file; 0 where it does not say.
+    pub(super) resolution: f64,
     /// The directory, in order.
     pub(super) entries: Vec<Entry>,
     /// The lines of parameters, with their places.
@@ -140,6 +142,7 @@ impl Cards {
             id,
             unit: Unit::Unknown("this file does not say its units".to_owned(), None),
             scale: None,
+            resolution: 0.0,
             entries: Vec::new(),
             data,
             delimiters: (b',', b';'),
@@ -156,7 +159,7 @@ impl Cards {
         Ok(cards)
     }
 
-    /// Delimiters and units.
+    /// Delimiters, units and resolution.
     fn global(&mut self, joined: &Joined) -> Result<(), Diagnostics> {
         // The delimiters stand first, in Hollerith form: 1H,,1H;, where they are not the usual ones.
         let bytes = joined.text.as_bytes();
@@ -171,6 +174,9 @@ impl Cards {
         if let Some(scale) = field(13) {
             let (x, span) = number(scale)?;
             self.scale = Some((x, span)).filter(|_| x != 1.0);
+        }
+        if let Some(resolution) = field(19) {
+            self.resolution = number(resolution)?.0.max(0.0);
         }
         let name = field(15).map(|parameter| parameter.text.trim().to_uppercase());
         let flag = match field(14) {

@@ -1,11 +1,13 @@
 //! Entities that are curves.
 
-use super::super::conic::{Conic, TURN, sweep};
+use super::super::conic::{Conic, TURN, dot};
 use super::super::spline::{Number, Stated};
+use super::super::turn;
 use super::super::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, fail, order, point};
 use super::cards::{Cards, Entry, Parameter, number};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::geom::bezier::Bezier;
+use crate::geom::elementary::atan2;
 use crate::units::MAX_AXES;
 use std::collections::BTreeSet;
 
@@ -19,7 +21,10 @@ const SAME: f64 = 2.0e-6;
 const SILENT: &[i64] = &[0, 124, 302, 304, 310, 312, 314, 402, 404, 406, 410];
 
 /// Curves that are not read.
-const UNREAD: &[(i64, &str)] = &[(104, "conic arc"), (130, "offset curve")];
+const UNREAD: &[(i64, &str)] = &[(130, "offset curve")];
+
+/// Curves that are read.
+const CURVES: &[i64] = &[100, 102, 104, 106, 110, 112, 126];
 
 /// R p + T.
 #[derive(Clone, Copy)]
@@ -73,7 +78,7 @@ pub(super) fn read(cards: &Cards) -> Result<Read, Diagnostics> {
             let error =
                 Diagnostic::error("curve-unread", format!("{kind}, a {name}, is a curve that is not read"));
             errors.push(error.at(entry.span, "").hint("export curves as B-splines (126)"));
-        } else if !matches!(entry.kind, 100 | 102 | 106 | 110 | 112 | 126) || open_line || points {
+        } else if !CURVES.contains(&entry.kind) || open_line || points {
             left_out.add(&name, entry.span);
         } else if entry.depends {
             left_out.add(&format!("{name} that is a part of another"), entry.span);
@@ -106,6 +111,8 @@ struct Reader<'c> {
     entry: &'c Entry,
     /// [`SAME`] in units of the file.
     same: f64,
+    /// What is nearer than this is one place, in units of the file.
+    resolution: f64,
     all: Vec<Parameter>,
     at: usize,
 }
@@ -113,7 +120,13 @@ struct Reader<'c> {
 impl<'c> Reader<'c> {
     fn of(cards: &Cards, entry: &'c Entry) -> Result<Reader<'c>, Diagnostics> {
         let mm = if let Unit::Stated(mm) = cards.unit { mm } else { 1.0 };
-        Ok(Reader { entry, same: SAME / mm, all: cards.parameters(entry)?, at: 0 })
+        Ok(Reader {
+            entry,
+            same: SAME / mm,
+            resolution: cards.resolution,
+            all: cards.parameters(entry)?,
+            at: 0,
+        })
     }
 
     fn next(&mut self) -> Result<Number, Diagnostics> {
@@ -202,7 +215,7 @@ fn curve(
             if matches!(part.kind, 116 | 132) {
                 continue;
             }
-            if !matches!(part.kind, 100 | 102 | 106 | 110 | 112 | 126) {
+            if !CURVES.contains(&part.kind) {
                 let message = format!("102 has a part of kind {}, a curve that is not read", part.kind);
                 return Err(fail("curve-unread", message, part.span));
             }
@@ -214,7 +227,7 @@ fn curve(
         curves
     } else {
         let (kind, path) = simple(cards, entry)?;
-        vec![FileCurve { path, kind, span: entry.span }]
+        vec![FileCurve::new(path, kind, entry.span)]
     };
     Ok(curves
         .into_iter()
@@ -231,13 +244,15 @@ fn simple(cards: &Cards, entry: &Entry) -> Result<(&'static str, Path), Diagnost
     Ok(match entry.kind {
         110 => ("110", Path::Lines(vec![reader.point()?, reader.point()?], Vec::new())),
         100 => ("100", arc(&mut reader)?),
+        104 => ("104", conic_arc(&mut reader)?),
         106 => ("106", points(&mut reader)?),
         112 => ("112", parametric(&mut reader)?),
         _ => ("126", rational(&mut reader)?),
     })
 }
 
-/// ZT, the centre, the start and the end: counter-clockwise about Z, and the whole circle where the end is the start.
+/// ZT, the centre, the start and the end: counter-clockwise about Z, and the whole circle where the file does not tell the
+/// end from the start.
 fn arc(reader: &mut Reader<'_>) -> Result<Path, Diagnostics> {
     let z = reader.float()?;
     let mut place = || -> Result<Point, Diagnostics> { Ok([reader.float()?, reader.float()?, z]) };
@@ -247,14 +262,73 @@ fn arc(reader: &mut Reader<'_>) -> Result<Path, Diagnostics> {
     if ux == 0.0 && uy == 0.0 {
         return Err(fail("radius-range", "100 starts at its centre", reader.entry.span));
     }
-    let to = if start == end { TURN } else { sweep(0.0, Conic::angle(&center, &u, &v, &end)) };
-    let conic = Conic { start, end, ..Conic::new(center, u, v, 0.0, to) };
+    let by = Conic::angle(&center, &u, &v, &end).rem_euclid(TURN);
+    let turn =
+        turn::between_places("100", by, (order::gap(&start, &end), reader.resolution), reader.entry.span)?;
+    let conic = Conic::new(center, u, v, 0.0, turn).with_ends(start, end);
     let misfit = conic.misfit();
     // What eight printed digits leave of a radius.
     let most = 1e-6 * (ux * ux + uy * uy).sqrt() + reader.same;
     if most < misfit {
         let message = format!("100 ends {misfit:.3e} beside its circle");
         return Err(fail("arc-misfit", message, reader.entry.span));
+    }
+    Ok(Path::Conic(conic))
+}
+
+/// A part of an ellipse A x² + B xy + C y² + D x + E y + F = 0 at the height ZT, from the start to the end, counter-clockwise
+/// about Z. Its centre c and its matrix are
+///
+/// ```text
+/// (2A  B ) c = −(D)          M = 1/−F' (A    B/2)          F' = F + (D, E)·c/2
+/// (B   2C)      (E)                    (B/2  C  )
+/// ```
+///
+/// so that (p − c)ᵀ M (p − c) = 1. With u from the centre to the start and v = J M u/√det M, J a quarter turn, uᵀMv = 0 and
+/// vᵀMv = uᵀMu = 1: these are half axes that belong together, and a place lies at the angle of (uᵀMd, vᵀMd).
+fn conic_arc(reader: &mut Reader<'_>) -> Result<Path, Diagnostics> {
+    let span = reader.entry.span;
+    let mut six = [0.0; 6];
+    for x in &mut six {
+        *x = reader.float()?;
+    }
+    let [a, b, c, d, e, f] = six;
+    let z = reader.float()?;
+    let mut place = || -> Result<Point, Diagnostics> { Ok([reader.float()?, reader.float()?, z]) };
+    let (start, end) = (place()?, place()?);
+    let det = 4.0 * a * c - b * b;
+    let center = [(b * e - 2.0 * c * d) / det, (b * d - 2.0 * a * e) / det, z];
+    let rest = -(f + 0.5 * (d * center[0] + e * center[1]));
+    let [p, q, r] = [a, 0.5 * b, c].map(|x| x / rest);
+    let square = p * r - q * q;
+    if !(0.0 < det && 0.0 < p && 0.0 < square && square.is_finite()) {
+        let message = "104 is a part of a parabola or hyperbola, a curve that is not read";
+        return Err(Diagnostic::error("curve-unread", message)
+            .at(span, "")
+            .hint("export curves as B-splines (126)")
+            .into());
+    }
+    let times = |x: f64, y: f64| [p * x + q * y, q * x + r * y];
+    let (ux, uy) = (start[0] - center[0], start[1] - center[1]);
+    let own = times(ux, uy);
+    // The start is brought onto the ellipse; how far it was beside is looked at below.
+    let size = (own[0] * ux + own[1] * uy).sqrt();
+    if !(0.0 < size) {
+        return Err(fail("radius-range", "104 starts at its centre", span));
+    }
+    let u = [ux / size, uy / size, 0.0];
+    let [mx, my] = times(u[0], u[1]);
+    let v = [-my / square.sqrt(), mx / square.sqrt(), 0.0];
+    let [nx, ny] = times(v[0], v[1]);
+    let (dx, dy) = (end[0] - center[0], end[1] - center[1]);
+    let by = atan2(nx * dx + ny * dy, mx * dx + my * dy).rem_euclid(TURN);
+    let turn = turn::between_places("104", by, (order::gap(&start, &end), reader.resolution), span)?;
+    let conic = Conic::new(center, u, v, 0.0, turn).with_ends(start, end);
+    let misfit = conic.misfit();
+    // Ten printed digits of the six numbers leave as much of the axes.
+    let most = 1e-6 * dot(&u, &u).max(dot(&v, &v)).sqrt() + reader.same;
+    if most < misfit {
+        return Err(fail("arc-misfit", format!("104 ends {misfit:.3e} beside its ellipse"), span));
     }
     Ok(Path::Conic(conic))
 }

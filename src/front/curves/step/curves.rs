@@ -4,9 +4,11 @@ use super::model::{Instance, Model};
 use super::text::Value;
 use super::units;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::front::curves::conic::{Conic, TURN, cross, dot, sweep, unit};
+use crate::front::curves::conic::{Conic, TURN, cross, dot, unit};
+use crate::front::curves::invert::parameters;
 use crate::front::curves::order::gap;
 use crate::front::curves::spline::{Number, Stated, part};
+use crate::front::curves::turn::{self, Turn};
 use crate::front::curves::{FileCurve, LeftOut, MOST_ERRORS, Path, Point, Read, Unit, fail};
 use crate::geom::nurbs::Nurbs;
 use crate::source::Span;
@@ -234,12 +236,12 @@ impl Reader<'_, '_> {
             let message = format!("#{number} is made of curves within each other without end");
             return Err(fail("reference-unknown", message, own.span));
         }
-        let one = |kind: &'static str, path: Path| Ok(vec![FileCurve { path, kind, span: own.span }]);
+        let one = |kind: &'static str, path: Path| Ok(vec![FileCurve::new(path, kind, own.span)]);
         match own.keyword() {
             "CIRCLE" | "ELLIPSE" => {
                 let kind = if own.is("CIRCLE") { "CIRCLE" } else { "ELLIPSE" };
                 let (center, u, v) = self.ellipse(&own)?;
-                one(kind, Path::Conic(Conic::new(center, u, v, 0.0, TURN)))
+                one(kind, Path::Conic(Conic::new(center, u, v, 0.0, Turn::WHOLE)))
             }
             "POLYLINE" => {
                 let list = own.list(own.parameter(0, 1)?)?;
@@ -393,7 +395,7 @@ impl Reader<'_, '_> {
         let forwards = own.truth(own.parameter(0, 4)?)?;
         let by_parameter = own.parameter(0, 5)?.value == Value::Word("PARAMETER");
         let missing = || fail("trim-missing", format!("#{} says no end of its curve", own.number), own.span);
-        let one = |path: Path| Ok(vec![FileCurve { path, kind: "TRIMMED_CURVE", span: own.span }]);
+        let one = |path: Path| Ok(vec![FileCurve::new(path, "TRIMMED_CURVE", own.span)]);
         if basis.is("LINE") {
             let start = self.model.triple(&basis, basis.parameter(0, 1)?)?;
             let vector = self.model.follow(&basis, basis.parameter(0, 2)?)?;
@@ -411,14 +413,25 @@ impl Reader<'_, '_> {
         }
         if basis.is("CIRCLE") || basis.is("ELLIPSE") {
             let (center, u, v) = self.ellipse(&basis)?;
-            let at = |trim: &Trim| {
-                let by_place = trim.place.map(|p| Conic::angle(&center, &u, &v, &p));
-                let stated = trim.parameter.map(|t| t * self.angle);
-                if by_parameter { stated.or(by_place) } else { by_place.or(stated) }
+            let stated = first.parameter.zip(second.parameter);
+            let places = first.place.zip(second.place);
+            let turned = match stated.filter(|_| by_parameter || places.is_none()) {
+                Some((from, to)) => {
+                    let stated = self.angle * (if forwards { to - from } else { from - to });
+                    let turn = turn::between_angles("an arc", stated, own.span)?;
+                    ((from * self.angle).rem_euclid(TURN), turn)
+                }
+                None => {
+                    let at = |trim: &Trim| {
+                        let angle = trim.parameter.map(|t| t * self.angle);
+                        trim.place.or_else(|| Some(Conic::place(&center, &u, &v, angle?)))
+                    };
+                    let (Some(start), Some(end)) = (at(&first), at(&second)) else { return Err(missing()) };
+                    Self::turned((&center, &u, &v), (&start, &end), forwards, own.span)?
+                }
             };
-            let (Some(from), Some(to)) = (at(&first), at(&second)) else { return Err(missing()) };
             let ends = (first.place, second.place);
-            return one(self.arc((center, u, v), (from, to), ends, forwards, own.span)?);
+            return one(self.arc((center, u, v), turned, ends, forwards, own.span)?);
         }
         let mut curves = self.curve(basis.number, own.span, depth + 1)?;
         if let ([FileCurve { path: Path::Nurbs(nurbs), .. }], Some(from), Some(to)) =
@@ -442,31 +455,64 @@ impl Reader<'_, '_> {
         if whole(first.place, start) && whole(second.place, end) {
             return Ok(curves);
         }
-        let message = format!("#{} is a part of a curve that is not said by parameters", own.number);
-        Err(fail("trim-unread", message, own.span))
+        if let ([FileCurve { path, .. }], Some(from), Some(to)) = (&curves[..], first.place, second.place)
+            && let Some(path) = self.between(path, &from, &to)
+        {
+            return one(path);
+        }
+        let message = format!("#{} is a part of a curve, and its ends do not say which", own.number);
+        Err(Diagnostic::error("trim-unread", message)
+            .at(own.span, "")
+            .hint("export the part as a curve of its own, or its ends as parameters")
+            .into())
     }
 
-    /// An arc from one angle to another, forwards or backwards; between places where they are known.
+    /// An arc that starts at an angle, forwards or backwards; between places where they are known.
     fn arc(
         &self,
         (center, u, v): (Point, Point, Point),
-        (from, to): (f64, f64),
+        (from, turn): (f64, Turn),
         ends: (Option<Point>, Option<Point>),
         forwards: bool,
         span: Span,
     ) -> Result<Path, Diagnostics> {
-        let whole = matches!(ends, (Some(a), Some(b)) if gap(&a, &b) == 0.0);
-        let (low, high) = if forwards { (from, to) } else { (to, from) };
-        let turned = if whole { TURN } else { sweep(low, high) };
-        let conic = Conic::new(center, u, v, low, low + turned);
-        let mut conic = if forwards { conic } else { conic.reversed() };
-        conic.start = ends.0.unwrap_or(conic.start);
-        conic.end = ends.1.unwrap_or(conic.end);
+        let conic = if forwards {
+            Conic::new(center, u, v, from, turn)
+        } else {
+            Conic::new(center, u, v, from - turn.by, turn).reversed()
+        };
+        let conic = conic.with_ends(ends.0.unwrap_or(conic.start), ends.1.unwrap_or(conic.end));
         let misfit = conic.misfit();
         if self.same < misfit {
             return Err(fail("arc-misfit", format!("an arc ends {misfit:.3e} beside its circle"), span));
         }
         Ok(Path::Conic(conic))
+    }
+
+    /// The angle of one place on a circle or ellipse, and how far it is from there to another, forwards or backwards.
+    fn turned(
+        (center, u, v): (&Point, &Point, &Point),
+        (start, end): (&Point, &Point),
+        forwards: bool,
+        span: Span,
+    ) -> Result<(f64, Turn), Diagnostics> {
+        let (from, to) = (Conic::angle(center, u, v, start), Conic::angle(center, u, v, end));
+        let by = (if forwards { to - from } else { from - to }).rem_euclid(TURN);
+        // Ends of edges are instances, which are one or not.
+        Ok((from, turn::between_places("an arc", by, (gap(start, end), 0.0), span)?))
+    }
+
+    /// The part of a path from one place to another, where each of them lies on it once; the ends of a closed one are passed
+    /// twice, of which that counts which leads forwards.
+    fn between(&self, path: &Path, start: &Point, end: &Point) -> Option<Path> {
+        let Path::Nurbs(nurbs) = path else { return None };
+        let starts = parameters(nurbs, start, self.same)?;
+        let ends = parameters(nurbs, end, self.same)?;
+        let mut forwards = starts.iter().flat_map(|from| ends.iter().map(move |to| (*from, *to)));
+        let mut forwards = forwards.by_ref().filter(|(from, to)| from < to);
+        let (Some((from, to)), None) = (forwards.next(), forwards.next()) else { return None };
+        // Ends that are near to each other may be a part of the curve or the rest of it.
+        (self.same < gap(start, end)).then(|| part(nurbs, from, to).map(Path::Nurbs))?
     }
 
     /// An edge, from its first vertex to its second.
@@ -486,9 +532,8 @@ impl Reader<'_, '_> {
             Path::Lines(vec![start, end], Vec::new())
         } else if basis.is("CIRCLE") || basis.is("ELLIPSE") {
             let (center, u, v) = self.ellipse(&basis)?;
-            let angle = |p: &Point| Conic::angle(&center, &u, &v, p);
-            let angles = (angle(&start), angle(&end));
-            self.arc((center, u, v), angles, (Some(start), Some(end)), forwards, own.span)?
+            let turned = Self::turned((&center, &u, &v), (&start, &end), forwards, own.span)?;
+            self.arc((center, u, v), turned, (Some(start), Some(end)), forwards, own.span)?
         } else {
             let mut curves = self.curve(basis.number, own.span, 1)?;
             let path = match (curves.pop(), curves.is_empty()) {
@@ -496,16 +541,18 @@ impl Reader<'_, '_> {
                 _ => return Err(fail("edge-part", format!("#{number} has no single curve"), own.span)),
             };
             let path = if forwards { path } else { path.reversed() };
-            if self.same < gap(&path.start(), &start).max(gap(&path.end(), &end)) {
-                let message = format!("#{number} is a part of its curve only, and that is not read");
-                return Err(Diagnostic::error("edge-part", message)
-                    .at(own.span, "")
-                    .hint("export the edges as curves of their own")
-                    .into());
+            if gap(&path.start(), &start).max(gap(&path.end(), &end)) <= self.same {
+                path
+            } else {
+                self.between(&path, &start, &end).ok_or_else(|| {
+                    let message = format!("#{number} is a part of its curve, and its ends do not say which");
+                    Diagnostic::error("edge-part", message)
+                        .at(own.span, "")
+                        .hint("export the edges as curves of their own")
+                })?
             }
-            path
         };
-        Ok(FileCurve { path, kind: "EDGE_CURVE", span: own.span })
+        Ok(FileCurve::new(path, "EDGE_CURVE", own.span))
     }
 }
 
