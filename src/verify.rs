@@ -13,9 +13,9 @@
 //! | lines | lines | point by point | proved |
 //! | any other curve | lines, polynomial blocks, B-splines | at equal parameters, or by a rising map of its own | proved |
 //!
-//! Beside that, whatever the tolerance: every path starts where a block has brought the tool ([`reached`]), no cut becomes a
-//! point or a point a cut ([`lengths`]), and the remarks at which an operator restarts stand where they were asked
-//! ([`sections`]).
+//! Beside that, whatever the tolerance: every path starts where a block has brought the tool (`reached`), no cut becomes a
+//! point or a point a cut (`lengths`), and the remarks at which an operator restarts stand where they were asked
+//! (`sections`).
 //!
 //! Where a path starts late or ends early by some rounding, the rest of the curve is missed by no more than that times
 //! the curve's own speed, which is added to the bound.

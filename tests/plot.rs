@@ -1,8 +1,9 @@
 //! `splinepost plot`: every figure is there, XML is sound, bytes are the same.
 
-use crate::support::folder;
+use crate::support::{folder, sources_with};
 use splinepost::machine::Machine;
 use splinepost::plot::deviation::deviation;
+use splinepost::plot::paths::figures;
 use splinepost::simulate::partition::Parametric;
 use splinepost::simulate::track::{Setting, Track};
 use splinepost::source::{Source, SourceId, Sources};
@@ -151,6 +152,56 @@ fn tilted_planes_are_drawn_in_the_work() {
             }
         }
     }
+}
+
+/// The figure of a job's path, and where its box says that it goes.
+fn pictured(job: &str, files: &[(&str, &str)], id: &str) -> (Vec<[f64; 2]>, String) {
+    let sources = sources_with(job, files);
+    let intent = (front::find("job").expect("jobs").parse)(&sources).unwrap_or_else(|e| panic!("{e:?}"));
+    let setting = Setting { tolerance: 0.001, ..Setting::default() };
+    let track = Track::of_program(&intent.program, &setting).expect("a track");
+    let figures = figures(&track, None);
+    let of = |id: &str| figures.iter().find(|figure| figure.id == id).expect("a figure");
+    let path = of(id).series.iter().find(|series| series.name == "path").expect("a path");
+    (path.points.clone(), of("spatial").series[0].name.clone())
+}
+
+/// One block of thirty thousand plunges: it is in the picture and in the box.
+#[test]
+fn a_plunge_among_many_blocks_is_drawn() {
+    let points: Vec<String> = (0..30_000)
+        .map(|i| format!("[{}, 0, {}]", f64::from(i) / 100.0, if i == 15_001 { -20 } else { 0 }))
+        .collect();
+    let job = format!(
+        "[process]\nfeed = 1000\nretract = {{ axis = \"Z\", to = 50 }}\n[[curve]]\nkind = \"points\"\n\
+         axes = [\"X\", \"Y\", \"Z\"]\npoints = [{}]\n",
+        points.join(", ")
+    );
+    let (path, told) = pictured(&job, &[], "xz");
+    assert!(path.contains(&[150.01, -20.0]) && path.len() < 2000, "{}", path.len());
+    assert_eq!(told, "X 0 to 299.99, Y 0 to 0, Z -20 to 50");
+}
+
+/// Arcs of radius 5 about ten places, twenty-five thousand of them, are drawn as arcs.
+#[test]
+fn arcs_of_many_are_round() {
+    let arc = |i: u32| format!("  0\nARC\n 10\n{}\n 20\n0\n 40\n5\n 50\n0\n 51\n180\n", 20 * (i % 10));
+    let arcs: String = (0..25_000).map(arc).collect::<Vec<_>>().concat();
+    let drawing = format!(
+        "  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n4\n  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n{arcs}  0\nENDSEC\n  0\nEOF\n"
+    );
+    let job = "[process]\nfeed = 1000\nretract = { axis = \"Z\", to = 50 }\n[[curve]]\nfile = \"a.dxf\"\nat = { Z = 0 }\n";
+    let (path, _) = pictured(job, &[("a.dxf", &drawing)], "xy");
+    for pair in path.windows(2).filter(|pair| pair.iter().flatten().all(|x| x.is_finite())) {
+        let middle = [pair[0][0].midpoint(pair[1][0]), pair[0][1].midpoint(pair[1][1])];
+        let about = (0..10).map(|i| {
+            let x = middle[0] - 20.0 * f64::from(i);
+            ((x * x + middle[1] * middle[1]).sqrt() - 5.0).abs()
+        });
+        // Parts of 4.5° are 0.004 off, and what is left out is within 190/12000.
+        assert!(about.fold(f64::INFINITY, f64::min) < 0.025, "{middle:?}");
+    }
+    assert!(path.iter().any(|p| 4.99 < p[1]));
 }
 
 /// What compiles for a dialect is drawn for it, five axes too.

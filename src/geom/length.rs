@@ -29,7 +29,7 @@
 //!
 //! A piece that stands somewhere, as where control points fall together, has no such disc there. Its parts are then halved
 //! until the control polygon, which is no shorter than the piece while all weights are positive (no plane meets the piece
-//! more often than the polygon), is no longer than the chord but for [`CLOSE`] of the whole.
+//! more often than the polygon), is no longer than the chord but for `CLOSE` of the whole.
 
 use super::bernstein::{Bernstein, binomial};
 use super::bezier::{Bezier, MAX_PIECE_DEGREE};

@@ -23,18 +23,32 @@ enum Answer {
 
 use Answer::{Path as Runs, Refused};
 
+/// What a reader of curves and the shape of a path are warned of; what machines are warned of has tests of its own.
+const OF_CURVES: &[&str] = &[
+    "corner",
+    "curve-open",
+    "curves-apart",
+    "curves-branch",
+    "edges-of-faces",
+    "entity-left-out",
+    "layers-alike",
+];
+
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// The files by name, with the answer.
 const CASES: &[(&str, Answer)] = &[
     // An ellipse of half axes 15 and 7.5, 4 · 15 E(3/4), and one of 12.75 and 6.375 upright.
-    ("ellipse-2pi-up", Runs(72.663_361_7, [[5.0, 35.0], [12.5, 27.5]], &[])),
+    ("ellipse-2pi-up", Runs(72.663_361_7, [[5.0, 35.0], [2.5, 17.5]], &[])),
     ("ellipse-2pi-11digits", Runs(61.763_857_4, [[91.191_351, 103.941_351], [40.081_357, 65.581_357]], &[])),
     ("step-circle-2pi-up", Runs(10.0 * TURN, [[-10.0, 10.0], [-10.0, 10.0]], &[])),
     // An outline of 60 by 40 with two holes of radius 3 at (15, 20) and (45, 20), and one of them alone.
     ("insert-holes", Runs(200.0 + 6.0 * TURN, [[0.0, 60.0], [0.0, 40.0]], &[])),
     ("insert-only", Runs(3.0 * TURN, [[12.0, 18.0], [17.0, 23.0]], &[])),
-    ("spline-closed-flag-open", Runs(118.299_968, [[0.0, 66.157], [0.0, 21.429]], &["curve-open"])),
+    (
+        "spline-closed-flag-open",
+        Runs(118.299_968, [[0.0, 66.153_846], [-0.625, 24.615_385]], &["curve-open"]),
+    ),
     // 30 and 20.
     ("bulge-nearly-straight", Runs(50.0, [[0.0, 30.0], [0.0, 20.0]], &[])),
     // 2π 1.4.
@@ -44,7 +58,7 @@ const CASES: &[(&str, Answer)] = &[
     // Two sides of 40, two of 20, four quarters of radius 5.
     ("bulge-corner", Runs(120.0 + 5.0 * TURN, [[0.0, 50.0], [0.0, 30.0]], &[])),
     // R = c (1 + b²)/4b turns by 4 atan b: b = 0.4 and 0.7 on chords of 30, and two sides of 20.
-    ("bulge-mirrored", Runs(112.103_27, [[-30.0, 0.0], [-6.0, 30.5]], &[])),
+    ("bulge-mirrored", Runs(112.103_27, [[-30.0, 0.0], [-6.0, 20.0]], &[])),
     // b = 2.5 and 1.8 on chords of 10, √125 between.
     ("bulge-over-1", Runs(70.754_741_6, [[0.0; 2]; 2], &[])),
     ("fold-fit", Runs(10.198_039 + 20.0, [[0.0, 20.0], [0.0, 2.0]], &[])),
@@ -82,29 +96,31 @@ const CASES: &[(&str, Answer)] = &[
     ("spline-mult4-jump", Refused(&["curve-breaks"])),
 ];
 
-/// Drawings of blocks in blocks, scaled, mirrored, turned, tilted and in arrays, made at random: the length of their
-/// curves and the box round them, as ezdxf 1.4.5 decomposes them and flattens what it finds to 1e-7 mm.
+/// Drawings of blocks in blocks, scaled, mirrored, turned, tilted and in arrays, made at random: the length of their curves and
+/// the box round them, by the places of each entity that ezdxf 1.4.5 states and the matrices that it makes of each INSERT, one
+/// after the other. What its `recursive_decompose` makes of them is no witness: it states a block within a block as an INSERT
+/// again, which cannot be skew, so that blocks in blocks of different scales are elsewhere.
 const INSERTS: &[(&str, f64, [f64; 3], [f64; 3])] = &[
-    ("00", 1177.908415, [-64.01397, -84.07451, -98.09944], [64.90735, 17.1754, 57.89365]),
-    ("01", 1330.793285, [-105.61462, -98.83963, -39.22163], [8.80507, 71.8507, 84.46751]),
-    ("02", 2828.899699, [-97.60349, -29.40527, -66.182], [-1.70176, 157.20561, 67.63002]),
-    ("03", 410.444177, [-6.10254, -67.20078, -21.78124], [29.69096, 13.72734, 51.86513]),
-    ("04", 1144.896861, [-116.40099, -82.02936, -143.05978], [28.80875, 59.15114, 100.11857]),
-    ("05", 2995.105464, [-128.10101, -67.40168, -129.06628], [68.18568, 77.68252, 86.68852]),
-    ("06", 715.989146, [-61.99738, -63.57604, -33.00811], [32.78749, 37.63192, 18.08939]),
-    ("07", 4171.253201, [-108.26129, -2.08689, -49.36168], [50.3768, 120.93965, 101.77951]),
-    ("08", 709.173972, [-27.03529, -93.31394, -49.09207], [54.21774, 22.88854, 76.23238]),
-    ("09", 416.741727, [-78.7171, -3.29961, -79.40412], [17.84296, 99.46368, 82.82989]),
-    ("10", 5096.063710, [-58.15245, -99.99031, -125.51505], [113.6229, 143.70643, 165.49938]),
-    ("11", 1340.524950, [-66.56261, -12.80861, -9.13503], [108.87565, 154.39446, 60.3389]),
-    ("12", 3717.864977, [-72.33634, -132.30971, -58.70199], [29.35109, 46.9671, 52.87268]),
-    ("13", 631.452272, [-134.91679, -71.56931, -28.89546], [10.87325, 118.68122, 11.83902]),
-    ("14", 421.964966, [-32.01629, -49.22103, -63.47537], [103.12011, 62.32456, 76.81001]),
-    ("15", 712.662067, [-74.43683, -17.44169, -30.04072], [16.84863, 75.94849, 20.00311]),
-    ("16", 19086.025568, [-8.33413, -68.31324, -47.96901], [97.83906, 60.38901, -3.26833]),
-    ("17", 2327.008965, [-38.20164, -155.96282, -37.50467], [137.32725, 6.54447, 15.0703]),
-    ("18", 1417.401900, [-16.28319, -63.96773, -37.40491], [71.60722, 244.54321, 31.40525]),
-    ("19", 9156.649129, [-45.54926, -83.75085, -20.94632], [86.57362, 74.21574, 39.86852]),
+    ("00", 1177.89848, [-64.014, -57.5927, -98.0994], [65.8934, 34.1329, 57.8936]),
+    ("01", 1349.72649, [-118.8353, -116.7269, -39.2216], [8.8051, 60.0642, 84.4673]),
+    ("02", 2522.93395, [-105.7609, -29.4053, -66.182], [-1.7018, 144.7783, 67.63]),
+    ("03", 413.12911, [-1.5877, -67.2008, -21.7812], [29.691, 13.7273, 51.8651]),
+    ("04", 1160.21287, [-115.3102, -77.7686, -147.3254], [28.8067, 60.211, 100.1186]),
+    ("05", 3022.26533, [-132.3942, -76.4339, -129.0663], [68.692, 101.1274, 86.6885]),
+    ("06", 2357.49509, [-92.5616, -67.9745, -33.0081], [32.7875, 37.6319, 18.0894]),
+    ("07", 2825.88010, [-71.19, -12.2109, -53.0723], [43.0743, 110.6945, 101.7795]),
+    ("08", 733.60169, [-14.8778, -94.5161, -49.0921], [55.1028, 90.297, 76.2324]),
+    ("09", 420.87935, [-75.0122, -3.2996, -79.4041], [17.9418, 100.5937, 82.8298]),
+    ("10", 5629.81245, [-58.1519, -97.5491, -206.0133], [113.4129, 142.2495, 184.8236]),
+    ("11", 1475.38153, [-48.9829, -12.8085, -9.1348], [174.9086, 147.1387, 60.3389]),
+    ("12", 3717.75148, [-81.1827, -133.3782, -58.702], [29.3511, 46.9671, 52.8727]),
+    ("13", 657.82977, [-130.9235, -76.1363, -28.8955], [10.5903, 134.0614, 11.839]),
+    ("14", 431.61749, [-31.8439, -48.9974, -63.4754], [107.1583, 62.5647, 76.6966]),
+    ("15", 623.82498, [-67.6548, -8.5569, -30.0407], [27.4823, 51.5235, 20.0031]),
+    ("16", 16581.93737, [-21.5503, -143.5364, -58.2879], [272.3144, 60.3886, -3.2683]),
+    ("17", 2326.75596, [-51.6868, -155.9607, -37.5047], [137.3269, 11.4687, 15.0703]),
+    ("18", 1135.64642, [-16.2832, -12.6352, -41.3203], [107.9861, 92.9386, 31.4053]),
+    ("19", 9349.79825, [-47.1206, -87.3783, -20.9463], [137.4513, 92.4611, 75.9324]),
 ];
 
 #[test]
@@ -124,13 +140,8 @@ fn curve_files_on_every_machine() {
                 }
                 (Runs(length, bounds, ids), Ok(output)) => {
                     let report = output.report.as_ref().expect("a proof");
-                    let told: Vec<&str> = output
-                        .warnings
-                        .0
-                        .iter()
-                        .filter(|d| d.severity == Severity::Warning)
-                        .map(|d| d.id)
-                        .collect();
+                    let told: Vec<&str> =
+                        output.warnings.0.iter().map(|d| d.id).filter(|id| OF_CURVES.contains(id)).collect();
                     let [x, y] = reach(&output.text, &output.machine);
                     // Lengths of the written path are summed from chords to 1e-4 of themselves; nine digits stand here.
                     let long = (report.cutting_length - length).abs() <= 1e-4 * length;
@@ -215,7 +226,7 @@ fn blocks_are_where_they_are_inserted() {
                 }
             }
         }
-        // Chords of 2000 parts of a quarter are 1e-7 of it short, and those of ezdxf, 1e-7 mm high on radii of up to 30 mm, 1e-7.
+        // Chords of 2000 parts of a turn are (π/2000)²/6 of it short: 4e-7. The box is rounded to 1e-4 mm.
         assert!((found - length).abs() < 1e-5 * length, "{case}: {found} is not {length}");
         for i in 0..3 {
             assert!(

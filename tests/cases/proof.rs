@@ -100,7 +100,7 @@ fn moves_of_rotary_axes_alone_take_time() {
         assert_eq!(output.setup.path_minutes, Some([0.36, 0.36]), "{built_in}");
         let minutes = output.report.as_ref().expect("a proof").minutes;
         assert!((minutes - 0.36).abs() < 1.0e-12, "{built_in}: {minutes}");
-        assert!(output.text.contains("TIME: 1 PATHS OF 0.36 MIN"), "{built_in}: {}", output.text);
+        assert!(output.text.contains("TIME: 1 PATH OF 0.36 MIN"), "{built_in}: {}", output.text);
     }
 }
 

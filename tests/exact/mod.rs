@@ -116,7 +116,7 @@ fn inputs(degree: usize, rational: bool) -> impl Strategy<Value = Input> {
 fn machine_of(name: &str) -> Machine {
     let all = "[\"X\", \"Y\", \"Z\", \"U\", \"V\", \"W\"]";
     machine(&format!(
-        "extends = \"{name}\"\nname = \"{name}\"\n[axes]\nlinear = {all}\nrotary = []\n[spline]\naxes = {all}\n"
+        "extends = \"{name}\"\nname = \"{name}\"\n[axes]\nlinear = {all}\nrotary = []\n[spline]\naxes = {all}\npoly_words = 100\n"
     ))
 }
 

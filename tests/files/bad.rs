@@ -119,7 +119,7 @@ fn damaged_step() {
     assert_eq!(one("#9=SEAM_CURVE('',#5,(),$);\n"), ["curve-unread"]);
     assert_eq!(
         one("#9=TRIMMED_CURVE('',#3,(#4),(#1),.T.,.CARTESIAN.);\n#8=PCURVE('',#5,$);\n"),
-        ["arc-misfit"]
+        ["turn-unclear"]
     );
     assert_eq!(one("#9=TRIMMED_CURVE('',#9,(#4),(#1),.T.,.CARTESIAN.);\n#8=PCURVE('',#5,$);\n"), [""; 0]);
     assert_eq!(one("#9=GEOMETRIC_SET('',(#9,#5));\n"), ["curve-unread"]);

@@ -200,7 +200,7 @@ fn turns_are_told_before_they_are_reduced() {
     assert_eq!(iges("5.,1.E-3").unwrap().curves[0].path.end(), [5., 1e-3, 0.]);
 }
 
-/// Arcs that are straight, and an arc whose centre is two thousand kilometres away.
+/// Arcs that are straight, and an arc whose centre is twenty thousand kilometres away.
 #[test]
 fn arcs_that_are_nearly_straight() {
     let read = |bulge: &str, long: &str| {

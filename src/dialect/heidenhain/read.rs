@@ -242,6 +242,10 @@ impl<'t> Reader<'t, '_> {
                 );
                 break;
             };
+            if next.text.trim_ascii_start().starts_with(';') {
+                let message = "a remark stands between the lines of one block";
+                self.assembler.error("remark-within", message, next.range());
+            }
             (text, at) = (next.text, next.start);
             span.end = Span::new(span.source, next.range()).end;
         }

@@ -73,8 +73,8 @@ pub(super) fn between_angles(kind: &str, stated: f64, span: Span) -> Result<Turn
     }
     let by = stated.rem_euclid(TURN);
     // A huge angle has lost what it had behind the whole turns.
-    let beyond = TURN - UNCLEAR < stated.abs();
-    if beyond && (error < UNCLEAR || 1.0e6 < stated.abs()) {
+    let beyond = !(stated.abs() <= TURN - UNCLEAR);
+    if beyond && (error < UNCLEAR || !(stated.abs() <= 1.0e6)) {
         let message = format!("{kind} turns by {stated} radians: next to nothing, or a whole turn");
         return Err(unclear(message, span));
     }
@@ -106,6 +106,7 @@ pub(super) fn between_places(
 }
 
 #[cfg(test)]
+#[expect(clippy::unreadable_literal, clippy::approx_constant, reason = "numbers as files print them")]
 mod tests {
     use super::*;
     use crate::source::SourceId;

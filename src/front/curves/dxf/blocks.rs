@@ -24,6 +24,9 @@ use std::collections::BTreeMap;
 /// The most blocks that a drawing inserts, each of an array counted.
 const MOST: usize = 1_000_000;
 
+/// What is said of more.
+const TOO_MANY: &str = "blocks-too-many";
+
 /// How deep blocks may stand in each other.
 const DEEPEST: usize = 64;
 
@@ -112,7 +115,7 @@ impl<'t> Insert<'t> {
         };
         let (columns, rows) = (count(70, distances[0])?, count(71, distances[1])?);
         if columns.checked_mul(rows).is_none_or(|all| MOST < all) {
-            return Err(group.error("blocks-too-many", "INSERT makes more than a million blocks"));
+            return Err(group.error(TOO_MANY, "INSERT makes more than a million blocks"));
         }
         let angle = or(50, 0.0)?;
         // Quarter turns are exact.
@@ -220,9 +223,10 @@ impl<'b, 't> Whole<'b, 't> {
         }
     }
 
-    /// An error is told once, however often its block is inserted.
+    /// An error is told once, however often its block is inserted; that there is too much, once at all.
     fn wrong(&mut self, error: Diagnostic) {
-        if !self.errors.contains(&error) {
+        let known = |own: &Diagnostic| *own == error || own.id == TOO_MANY && error.id == TOO_MANY;
+        if !self.errors.iter().any(known) {
             self.errors.push(error);
         }
     }
@@ -255,9 +259,7 @@ impl<'b, 't> Whole<'b, 't> {
         let depth = within.map_or(1, |placement| placement.depth + 1);
         if DEEPEST < depth {
             let message = format!("blocks stand in each other more than {DEEPEST} deep");
-            self.wrong(
-                fail("blocks-too-many", message).hint("explode them in the CAD system, and export again"),
-            );
+            self.wrong(fail(TOO_MANY, message).hint("explode them in the CAD system, and export again"));
             return;
         }
         if block.items.is_empty() {
@@ -273,7 +275,7 @@ impl<'b, 't> Whole<'b, 't> {
             self.add(&block.items, Some(&placement), layer);
             if MOST < self.count.max(self.curves.len()) {
                 self.wrong(fail(
-                    "blocks-too-many",
+                    TOO_MANY,
                     "the blocks of this drawing make more than a million curves".to_owned(),
                 ));
                 return;
