@@ -10,7 +10,8 @@
 //! | paths at feed, of any blocks: lines, arcs, polynomials, B-splines | by a bound on their distance, both run in order |
 //! | F | exactly where the paths meet, every one in its order; by the time of the path where the machines measure it differently |
 //! | the control's own splines | their points, and that both are of one kind |
-//! | remarks, block numbers, names, work offsets, subprograms, the lines round a program | not: they are no motion |
+//! | the work offset, G54, where both state one | exactly |
+//! | remarks, block numbers, names, shifts of the text, subprograms, the lines round a program | not: they are no motion |
 //!
 //! Numbers of machines with different decimals are the same where the coarser one would have rounded to it.
 //!
@@ -172,6 +173,10 @@ pub fn compare(
         let back = if found.is_same() { None } else { Some(Walk::new(&other, &own, rule).run()) };
         back.filter(Found::is_same).map_or(found, Found::swapped)
     };
+    let mut found = found;
+    if let Some(diagnostic) = other_offset(&first, &second) {
+        found.differs_first(diagnostic);
+    }
     let names = [a, b].map(|sources| sources.get(SourceId::INPUT).map_or(String::new(), |s| s.name.clone()));
     let figures = Figures::new(&found, names, [from_a, from_b], tolerance, own.axes.direction().is_some());
     let mut differences = Diagnostics(found.told);
@@ -215,6 +220,7 @@ impl Read {
         let moved = |span: &mut Span| span.source = span.source.behind(count);
         match self {
             Read::Program(_, reading) => {
+                reading.stated.offset.iter_mut().for_each(|offset| moved(&mut offset.span));
                 reading.decimals.program.steps.iter_mut().for_each(|located| moved(&mut located.span));
             }
             Read::Input(intent) => {
@@ -222,6 +228,18 @@ impl Read {
             }
         }
     }
+}
+
+/// What is wrong where both programs state from which work offset they count, and not the same.
+fn other_offset(first: &Read, second: &Read) -> Option<Diagnostic> {
+    let (Read::Program(_, first), Read::Program(_, second)) = (first, second) else { return None };
+    let (own, other) = (first.stated.offset.as_ref()?, second.stated.offset.as_ref()?);
+    (own.word != other.word).then(|| {
+        let message = format!("the first program counts from {}, the second from {}", own.word, other.word);
+        Diagnostic::refusal("work-offset-differs", message)
+            .at(own.span, own.word.as_str())
+            .and_at(other.span, other.word.as_str())
+    })
 }
 
 /// An input as the machine of the other program counts it.

@@ -158,7 +158,7 @@ pub fn recompile(
     machine: &Machine,
     options: &Options,
 ) -> Result<Output, Failure> {
-    let mut intent = translate::parse(sources, from)?;
+    let mut intent = translate::parse(sources, from, machine)?;
     intent.warnings.extend(translate::turns_otherwise(&intent, from, machine));
     compile_intent(intent, machine, options)
 }

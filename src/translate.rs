@@ -10,12 +10,15 @@
 //! | tools, spindle, coolant, stops, rapids, remarks | the same |
 //! | work offsets that the text counts from | nothing: positions are those of the work's own zero |
 //! | the lines and remarks round the program | nothing: they are the other machine's affair |
+//! | a work offset of the program's own | the same, where the other machine's lines state it; refused elsewhere |
+//! | words of how exactly the control runs: G61.1, G5 P2 | refused: another control has others |
 //!
 //! Axes that the program never moves are left out, X, Y and Z excepted. F is taken as the speed along the linear axes; where
 //! the machine counts rotary axes in it, a program that turns one is refused. A program that leads the tool's tip has its lines
 //! for it, so that nothing is added on the way to safe height and back.
 
 mod planes;
+mod stated;
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -76,6 +79,7 @@ pub fn intent(reading: Warned<Reading>, machine: &Machine) -> Result<Intent, Dia
     let decimals = &reading.decimals;
     let steps = &decimals.program.steps;
     warnings.extend(is_whole(&reading, machine)?);
+    stated::is_translated(&reading.stated)?;
     let own = decimals.program.axes;
     let moved = moved_axes(decimals);
     let space = |i: &usize| ["X", "Y", "Z"].contains(&own.name(*i).as_str());
@@ -303,12 +307,18 @@ pub fn turns_otherwise(intent: &Intent, from: &Machine, to: &Machine) -> Diagnos
     warnings
 }
 
-/// Reads the input as a program for `machine`.
+/// Reads the input as a program for `machine`, which becomes one for `to`.
 ///
 /// # Errors
 /// The machine cannot read it, or see [`intent`].
-pub fn parse(sources: &crate::source::Sources, machine: &Machine) -> Result<Intent, Diagnostics> {
+pub fn parse(
+    sources: &crate::source::Sources,
+    machine: &Machine,
+    to: &Machine,
+) -> Result<Intent, Diagnostics> {
     let text = sources.get(SourceId::INPUT).map_or("", |source| source.text.as_str());
     let machine = machine_of(text, machine);
-    intent((machine.dialect.read)(text, SourceId::INPUT, &machine)?, &machine)
+    let reading = (machine.dialect.read)(text, SourceId::INPUT, &machine)?;
+    stated::keeps_offset(&reading.value.stated, to)?;
+    intent(reading, &machine)
 }

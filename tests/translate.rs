@@ -62,7 +62,7 @@ fn a_cubic_goes_round_all_dialects() {
     // knots were taken out.
     let pieces = |text: &str| -> Vec<Bezier> {
         let sources = Sources::new(Source::new("round.mpf", text));
-        let intent = translate::parse(&sources, &sinumerik).unwrap_or_else(|e| panic!("{e:?}"));
+        let intent = translate::parse(&sources, &sinumerik, &sinumerik).unwrap_or_else(|e| panic!("{e:?}"));
         let cuts = intent.program.steps.iter().filter_map(|located| located.step.cut());
         cuts.filter(|cut| matches!(cut.curve, Curve::Polynomial(_)))
             .flat_map(|cut| cut.curve.pieces())

@@ -161,6 +161,9 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
     if said.offsets.iter().all(Option::is_none) {
         return assembler.error("arc-center", "an arc without its centre in I J K", range());
     }
+    if !is_placed(assembler, &[u, v], said.named, w, said.span) {
+        return;
+    }
     let end = assembler.target(said.named);
     let start: Units = assembler.start(said.named, &end, said.span);
     let reversed = assembler.machine.reversed();
@@ -185,6 +188,30 @@ pub fn read(assembler: &mut Assembler<'_>, said: &Said<'_>) {
     let by = ArcBy::Center(Circle { plane: said.plane, sense, center }, said.turns);
     let arc = WrittenArc { start, end, by, line: said.line };
     add(assembler, arc, &end, said.span);
+}
+
+/// Whether an arc starts from a place that the text says, in these axes, and in `along` where it goes along it: its centre counts
+/// from there.
+pub fn is_placed(
+    assembler: &mut Assembler<'_>,
+    plane: &[usize],
+    named: &[(usize, i64)],
+    along: usize,
+    span: Span,
+) -> bool {
+    let goes_along = named.iter().any(|(axis, _)| *axis == along).then_some(along);
+    let mut axes = plane.iter().copied().chain(goes_along);
+    let Some(axis) = axes.find(|axis| assembler.position[*axis].is_none()) else { return true };
+    let message = format!(
+        "where {} is at the start of this arc the text does not say",
+        assembler.machine.axes.name(axis)
+    );
+    assembler.diagnostics.push(
+        Diagnostic::error("place-unknown", message)
+            .at(span, "")
+            .hint("nothing named it yet, or it went to its home: a rapid before says where it is"),
+    );
+    false
 }
 
 /// Adds an arc that has a radius, and an end on its circle.

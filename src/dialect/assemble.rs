@@ -3,10 +3,13 @@
 //! The position is unknown until an axis was named. A cut that starts where some axis is unknown (a fragment without
 //! its approach) starts, for that axis, where it ends, and a warning says so.
 
+mod frames;
+
+use super::stated::Stated;
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
 use crate::ir::{
-    Auxiliary, Cut, Decimals, Located, Program, Role, Shift, Step, ToolCall, Units, Written, WrittenPoints,
+    Auxiliary, Cut, Decimals, Located, Program, Role, Step, ToolCall, Units, Written, WrittenPoints,
 };
 use crate::machine::Machine;
 use crate::source::{SourceId, Span};
@@ -52,6 +55,8 @@ pub struct Assembler<'m> {
     pub number: u32,
     /// The parameters that were set.
     pub parameters: BTreeMap<u32, Decimal>,
+    /// What it states beside its moves.
+    pub stated: Stated,
     /// Where the text counts each axis from, in units of its last decimal.
     shift: Units,
     reversed: [bool; MAX_AXES],
@@ -64,6 +69,7 @@ pub struct Assembler<'m> {
     led: bool,
     /// The tool that was called last, and whether a line named the register of its length.
     tool: Option<(ToolCall, bool)>,
+    tilted: bool,
     /// Which axes the cuts so far name.
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.
@@ -96,6 +102,7 @@ impl<'m> Assembler<'m> {
             name: String::new(),
             number: 0,
             parameters: BTreeMap::new(),
+            stated: Stated::default(),
             shift: [0; MAX_AXES],
             reversed: machine.reversed(),
             modulo: std::array::from_fn(|i| {
@@ -107,6 +114,7 @@ impl<'m> Assembler<'m> {
             run_feed: None,
             led: false,
             tool: None,
+            tilted: false,
             named: [false; MAX_AXES],
             unknown: None,
             missing: [None; MAX_AXES],
@@ -123,6 +131,16 @@ impl<'m> Assembler<'m> {
     pub fn error(&mut self, id: &'static str, message: impl Into<String>, range: std::ops::Range<usize>) {
         let span = self.span(range);
         self.diagnostics.push(Diagnostic::error(id, message).at(span, ""));
+    }
+
+    /// Says that a word names an axis that the machine file does not.
+    pub fn axis_unknown(&mut self, name: &str, range: std::ops::Range<usize>) {
+        let span = self.span(range);
+        self.diagnostics.push(
+            Diagnostic::error("axis-unknown", format!("{name} is not an axis of this machine"))
+                .at(span, "")
+                .hint("where the machine has it, name it under [axes] linear or rotary of the machine file"),
+        );
     }
 
     /// Which axis a single letter names.
@@ -229,12 +247,15 @@ impl<'m> Assembler<'m> {
         value
     }
 
-    /// Counts axes from other places from here on.
-    pub fn shift(&mut self, shifts: Vec<Shift<Decimal>>, span: Span) {
-        for Shift { axis, to, .. } in &shifts {
-            self.shift[*axis] = to.units(self.digits[*axis]).unwrap_or_default();
-        }
-        self.step(Step::Shift(shifts), span);
+    /// Forgets where an axis is: a line of the machine file moves it, or counts it from elsewhere.
+    pub fn lose(&mut self, axis: usize) {
+        self.position[axis] = None;
+    }
+
+    /// Forgets the feed: a line of the machine file has another, and a move that needs one states it again.
+    pub fn lose_feed(&mut self) {
+        self.flush();
+        self.feed = None;
     }
 
     /// Adds a retraction in machine coordinates.
@@ -352,9 +373,21 @@ impl<'m> Assembler<'m> {
     pub fn step(&mut self, step: Step<Decimal, Written>, span: Span) {
         match &step {
             Step::Tool(call) => self.tool = Some((*call, false)),
-            Step::Auxiliary(Auxiliary::TipControl) => self.led = true,
-            Step::Auxiliary(Auxiliary::TipControlEnd) => self.led = false,
-            Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => self.position = [None; MAX_AXES],
+            Step::Auxiliary(Auxiliary::TipControl) => {
+                self.led = true;
+                self.changes_frames(span);
+            }
+            Step::Auxiliary(Auxiliary::TipControlEnd) => {
+                self.led = false;
+                self.changes_frames(span);
+            }
+            Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => {
+                self.position = [None; MAX_AXES];
+                self.tilted = !matches!(step, Step::Auxiliary(Auxiliary::PlaneEnd));
+                if self.is_shifted() {
+                    self.shift_elsewhere("a tilted plane beside a work offset is not read", span);
+                }
+            }
             Step::Auxiliary(_)
             | Step::Comment(_)
             | Step::Spindle(_)
@@ -454,7 +487,7 @@ impl<'m> Assembler<'m> {
     ///
     /// # Errors
     /// The diagnostics hold one.
-    pub fn finish(mut self) -> Result<Warned<Decimals>, Diagnostics> {
+    pub fn finish(mut self) -> Result<Warned<(Decimals, Stated)>, Diagnostics> {
         self.flush();
         let unnamed = self.nowhere();
         if let Some((unknown, span)) = self.unknown
@@ -498,8 +531,8 @@ impl<'m> Assembler<'m> {
             | Step::Cut(_) => None,
         });
         let setup = setup.collect();
-        let Assembler { name, number, machine, digits, .. } = self;
+        let Assembler { name, number, machine, digits, stated, .. } = self;
         let program = Program { name, number, axes: machine.axes, steps };
-        Ok(Warned { value: Decimals { program, digits, unnamed, setup }, warnings })
+        Ok(Warned { value: (Decimals { program, digits, unnamed, setup }, stated), warnings })
     }
 }

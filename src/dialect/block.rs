@@ -29,6 +29,9 @@ impl Line<'_> {
 }
 
 /// The lines of a text in the order in which a control comes to them: a subprogram's where it is called.
+///
+/// A labelled section that stands before the end of the program runs when it is passed too, and again where it is called. Behind
+/// the end of the program only calls come to it.
 pub struct Lines<'t> {
     text: &'t str,
     at: usize,
@@ -40,6 +43,8 @@ pub struct Lines<'t> {
 struct Calls<'t> {
     call: &'t Template,
     end: &'t Template,
+    /// Whether a section is no subprogram, but a part of the program with a label.
+    passed: bool,
     bodies: Vec<Body>,
     /// Where to go on, and the line that stands there; none while no subprogram runs.
     back: Option<(usize, u32)>,
@@ -47,12 +52,14 @@ struct Calls<'t> {
     left: usize,
 }
 
-/// A subprogram: its label, where it begins, the line that stands there, and where it ends.
+/// A subprogram: its label, where it begins, the line that stands there, where it ends, and whether that is behind the program's
+/// end.
 struct Body {
     label: String,
     start: usize,
     number: u32,
     end: usize,
+    behind: bool,
 }
 
 /// As many bytes of calls are followed: a text of calls alone must not run for ever.
@@ -69,7 +76,8 @@ impl<'t> Lines<'t> {
             let bodies = lines.bodies(&machine.frame.begin, &machine.frame.end);
             (lines.at, lines.number) = (at, 0);
             let end = &machine.frame.end;
-            lines.calls = Some(Calls { call, end, bodies, back: None, left: MAX_CALLED });
+            let passed = machine.dialect.passes_labels;
+            lines.calls = Some(Calls { call, end, passed, bodies, back: None, left: MAX_CALLED });
         }
         lines
     }
@@ -81,21 +89,27 @@ impl<'t> Lines<'t> {
 
     /// The subprograms of the text.
     fn bodies(&mut self, begin: &Template, end: &Template) -> Vec<Body> {
-        let mut bodies = Vec::new();
+        let mut bodies: Vec<Body> = Vec::new();
         let mut open: Option<Body> = None;
+        let mut behind = false;
         while let Some(line) = self.line() {
             let code = unnumbered(line.text);
+            behind |= ends_program(code);
             if let Some(body) = open.take() {
                 if filled(end, code).is_some_and(|found| found.is_empty() || found == body.label) {
-                    bodies.push(Body { end: self.at, ..body });
+                    bodies.push(Body { end: self.at, behind: body.behind && behind, ..body });
                 } else {
                     open = Some(body);
                 }
             } else if let Some(label) = filled(begin, code) {
                 let label = label.to_owned();
-                open = Some(Body { label, start: line.start, number: line.number, end: 0 });
+                open = Some(Body { label, start: line.start, number: line.number, end: 0, behind });
             }
         }
+        // Which of two alike would run nobody knows.
+        let labels: Vec<String> = bodies.iter().map(|body| body.label.clone()).collect();
+        let once = |body: &Body| labels.iter().filter(|label| **label == body.label).count() == 1;
+        bodies.retain(once);
         bodies
     }
 
@@ -112,6 +126,13 @@ impl<'t> Lines<'t> {
         self.at += length + 1;
         Some(line)
     }
+}
+
+/// Whether a line ends the program: M30, M2 or END PGM stands in it, and not in a remark.
+fn ends_program(code: &str) -> bool {
+    let code = code.split([';', '(']).next().unwrap_or_default();
+    let mut words = code.split_ascii_whitespace();
+    code.starts_with("END PGM") || words.any(|word| matches!(word, "M30" | "M2" | "M02"))
 }
 
 /// A line without its block number.
@@ -143,9 +164,9 @@ impl<'t> Lines<'t> {
     /// The next line of a text with subprograms.
     fn next_called(&mut self) -> Option<Line<'t>> {
         let main = |calls: &Calls| calls.back.is_none();
-        // In the text's own order subprograms are passed over.
+        // In the text's own order subprograms behind the end are passed over.
         if let Some(calls) = self.calls.as_ref().filter(|calls| main(calls))
-            && let Some(body) = calls.bodies.iter().find(|body| body.start == self.at)
+            && let Some(body) = calls.bodies.iter().find(|body| body.behind && body.start == self.at)
         {
             let (from, end) = (self.at, body.end);
             self.number += self.text[from..end.min(self.text.len())].matches('\n').count() as u32;
@@ -174,7 +195,10 @@ impl<'t> Lines<'t> {
             (self.at, self.number) = (body.start, body.number - 1);
             return Some(Line { structure: true, ..line });
         }
-        Some(line)
+        // The marks of a section that is passed do nothing.
+        let marks =
+            calls.passed && calls.bodies.iter().any(|body| body.start == line.start || body.end == at);
+        Some(Line { structure: marks, ..line })
     }
 }
 

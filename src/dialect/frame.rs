@@ -3,6 +3,7 @@
 use super::assemble::Assembler;
 use super::parts::home_word;
 use crate::decimal::{Decimal, read_decimal};
+use crate::diagnostic::Diagnostic;
 use crate::ir::{Auxiliary, Shift, Step, ToolCall};
 use crate::machine::Machine;
 use crate::machine::template::Template;
@@ -11,6 +12,7 @@ use crate::units::{Axes, Axis, Kind};
 use std::ops::Range;
 
 /// Where a reader stands among the fixed lines of the machine file.
+#[allow(clippy::struct_excessive_bools, reason = "each is about another line")]
 pub struct Frame<'m> {
     machine: &'m Machine,
     header: usize,
@@ -19,9 +21,14 @@ pub struct Frame<'m> {
     ended: usize,
     /// Lines of the end that may also be switches before it.
     doubtful: Vec<(Auxiliary<Decimal>, Span)>,
-    /// The template lines that must follow, once the first of several was met.
+    /// The template lines that must follow, once the first of several was met, and where that stands.
     pending: Vec<&'m Template>,
+    begun: Option<Span>,
     shifting: Option<Shifting>,
+    /// Whether the last line said from where axes count, or set a parameter: its axes are no places.
+    counts: bool,
+    /// Whether remarks stand behind words in lines of the machine file.
+    remarks: bool,
     assign: Template,
     /// What the lines that may stand behind the header begin and end with, by the first byte of a line.
     outlines: Vec<Vec<Outline>>,
@@ -58,13 +65,17 @@ impl<'m> Frame<'m> {
             ended: 0,
             doubtful: Vec::new(),
             pending: Vec::new(),
+            begun: None,
             shifting: None,
+            counts: false,
+            remarks: false,
             assign: Template(machine.dialect.parameter.assign.to_owned()),
             outlines: Vec::new(),
             started: false,
             start_due: !machine_frame.start.is_empty(),
             name: None,
         };
+        frame.remarks = frame.has_remarks();
         let firsts = frame.lists().into_iter().filter_map(<[Template]>::first);
         let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
         let outlines: Vec<Outline> = all.map(Outline::new).collect();
@@ -85,6 +96,29 @@ impl<'m> Frame<'m> {
     /// Whether all that stands before the first tool was met: the header, and the lines behind the first retraction.
     pub fn start_complete(&self) -> bool {
         self.header_complete() && !self.start_due
+    }
+
+    /// Whether the last line said from where axes count, or set a parameter: its axes are no places.
+    pub fn counts(&self) -> bool {
+        self.counts
+    }
+
+    /// Whether the end of the program has begun, so that every line belongs to it.
+    pub fn is_ending(&self) -> bool {
+        0 < self.ended
+    }
+
+    /// Whether a remark behind the words of a block is a line of its own: not where the machine file has such lines.
+    pub fn parts_remarks(&self) -> bool {
+        !self.remarks
+    }
+
+    /// Whether remarks stand behind words in lines of the machine file.
+    fn has_remarks(&self) -> bool {
+        let marks: &[char] = if self.machine.dialect.least_increments { &['('] } else { &[';'] };
+        let header = &self.machine.frame.header;
+        let lines = self.lists().into_iter().flatten().chain(header).chain(self.end.iter().copied());
+        lines.into_iter().any(|line| line.0.find(marks).is_some_and(|at| 0 < at))
     }
 
     /// Whether the whole footer was met, and what closes the text.
@@ -132,18 +166,26 @@ impl<'m> Frame<'m> {
         assembler: &mut Assembler<'m>,
     ) -> Met {
         let frame = &self.machine.frame;
+        self.counts = false;
         let here = |template: &Template| format!("here the machine file has `{}`", template.0);
         if let Some(template) = self.pending.first().copied() {
             self.pending.remove(0);
             if !self.take(template, text, span, false, assembler) {
-                assembler.error("frame-line", here(template), range);
+                let diagnostic = Diagnostic::error("frame-line", here(template)).at(span, "");
+                assembler.diagnostics.push(match self.begun {
+                    Some(begun) => diagnostic.and_at(begun, "behind this line"),
+                    None => diagnostic,
+                });
                 self.pending.clear();
             }
             return Met::Fixed;
         }
         if let Some(shifting) = self.shifting.take() {
             match self.shift(shifting, text, assembler) {
-                Ok(true) => return Met::Fixed,
+                Ok(true) => {
+                    self.counts = true;
+                    return Met::Fixed;
+                }
                 Ok(false) => {}
                 Err(template) => {
                     assembler.error("frame-line", here(template), range);
@@ -216,6 +258,7 @@ impl<'m> Frame<'m> {
                     assembler.step(Step::Auxiliary(switch), span);
                 }
                 self.pending = lines[1..].iter().collect();
+                self.begun = Some(span);
                 return Met::Fixed;
             }
         }
@@ -224,10 +267,12 @@ impl<'m> Frame<'m> {
         {
             let shifting = Shifting { line: 0, shifts: Vec::new(), span };
             if self.shift(shifting, text, assembler) == Ok(true) {
+                self.counts = true;
                 return Met::Fixed;
             }
         }
         if begins_alike(&self.assign, text) && self.assigned(text, assembler) {
+            self.counts = true;
             return Met::Fixed;
         }
         if let Some(template) = self.end.first().copied()
@@ -370,11 +415,16 @@ impl<'m> Frame<'m> {
                     assembler.home(axis, span);
                 }
                 "seconds" => match whole_decimal(value) {
-                    Some(seconds) => assembler.step(Step::Auxiliary(Auxiliary::Dwell(seconds)), span),
-                    None => return false,
+                    Some(seconds) if !seconds.compare(Decimal::ZERO).is_lt() => {
+                        assembler.step(Step::Auxiliary(Auxiliary::Dwell(seconds)), span);
+                    }
+                    Some(_) | None => return false,
                 },
+                // A speed has no sign: that would be the other way round.
                 _ => match read_decimal(value.as_bytes(), false) {
-                    Ok((rpm, length)) if length == value.len() => assembler.step(Step::Spindle(rpm), span),
+                    Ok((rpm, length)) if length == value.len() && !rpm.compare(Decimal::ZERO).is_lt() => {
+                        assembler.step(Step::Spindle(rpm), span);
+                    }
                     _ => return false,
                 },
             }
@@ -415,7 +465,7 @@ impl<'m> Frame<'m> {
                 if repeated {
                     self.shifting = Some(shifting);
                 } else if ends {
-                    assembler.shift(shifting.shifts, shifting.span);
+                    assembler.shift(shifting.shifts, self.replaces(), shifting.span);
                 } else {
                     shifting.line += 1;
                     self.shifting = Some(shifting);
@@ -424,11 +474,17 @@ impl<'m> Frame<'m> {
             }
             // Behind the last of the lines that stand once for each axis comes something else.
             None if repeated && ends && !shifting.shifts.is_empty() => {
-                assembler.shift(shifting.shifts, shifting.span);
+                assembler.shift(shifting.shifts, self.replaces(), shifting.span);
                 Ok(false)
             }
             None => Err(template),
         }
+    }
+
+    /// Whether a work offset of these lines replaces the whole shift before it.
+    fn replaces(&self) -> bool {
+        let first = self.machine.frame.shift.first().and_then(|line| line.0.split_ascii_whitespace().next());
+        self.machine.dialect.replaces_shift.is_some_and(|word| first == Some(word))
     }
 
     /// Meets a line that sets a parameter.

@@ -11,6 +11,7 @@
 //! | [`frame`] | the fixed lines round a program, read back |
 //! | [`modal`] | what a writer remembers between blocks |
 //! | [`parts`] | a program with the machine's lines round it, subprograms too |
+//! | [`stated`] | work offset, and how exactly the control runs |
 //! | [`sinumerik`] | POLY, BSPLINE, ASPLINE, CSPLINE |
 //! | [`heidenhain`] | SPL |
 //! | [`iso`] | Mazak G06.1, G06.2 |
@@ -25,6 +26,7 @@ pub mod iso;
 pub mod modal;
 pub mod parts;
 pub mod sinumerik;
+pub mod stated;
 
 use crate::diagnostic::{Diagnostics, Warned};
 use crate::geom::arc::Plane;
@@ -32,6 +34,7 @@ use crate::ir::{Decimals, ThroughKind};
 use crate::machine::Machine;
 use crate::pass::check::Legal;
 use crate::source::SourceId;
+use stated::Stated;
 use std::ops::Range;
 
 /// How a family of controls is written to and read.
@@ -53,6 +56,14 @@ pub struct Dialect {
     pub parameter: Parameter,
     /// What every program takes for granted, so that no line round it may say otherwise.
     pub granted: &'static [Granted],
+    /// Whether a number without a point may count least increments: X30 as 0.030 mm.
+    pub least_increments: bool,
+    /// Whether what is called may stand within the program, between labels.
+    pub passes_labels: bool,
+    /// The word of a work offset line that replaces the whole shift before it, also of axes that it does not name.
+    pub replaces_shift: Option<&'static str>,
+    /// Words that make no work offset by themselves: they add to the one before, or depend on where the tool is.
+    pub adds_shift: &'static [&'static str],
     /// Whether F can be inverse time.
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.
@@ -123,6 +134,8 @@ pub struct Reading {
     pub footer: bool,
     /// The first block whose number is not the one that the machine file gives it.
     pub misnumbered: Option<Range<usize>>,
+    /// What it states beside its moves.
+    pub stated: Box<Stated>,
 }
 
 /// A dialect's own name for a form of curve.

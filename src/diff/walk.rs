@@ -81,6 +81,13 @@ impl Found {
         }
     }
 
+    /// Notes a difference that is told before all others.
+    pub(super) fn differs_first(&mut self, diagnostic: Diagnostic) {
+        self.differences += 1;
+        self.told.insert(0, diagnostic);
+        self.told.truncate(MOST_TOLD);
+    }
+
     /// Takes what was found of one path.
     pub(super) fn take(&mut self, path: &Farthest, places: impl FnOnce() -> [Span; 2]) {
         if farther(self.deviation, path.bound) {

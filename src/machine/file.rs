@@ -1,5 +1,6 @@
 //! Machine files as text: keys, values, and what is wrong with them.
 
+mod counts;
 mod parts;
 mod spelling;
 
@@ -119,7 +120,7 @@ impl Reader {
             );
             self.diagnostics.push(Diagnostic::error("digits-range", message));
         }
-        let text = self.text(file.text.unwrap_or_default(), base.map(|b| &b.text))?;
+        let text = self.text(file.text.unwrap_or_default(), base.map(|b| &b.text), dialect)?;
         let feed = file.feed.unwrap_or_default();
         let block_time = feed.block_time.as_ref().map(|time| *time.get_ref());
         if let Some(time) =

@@ -46,6 +46,7 @@ pub const KEYS: &[Key] = &[
             Key::value("point_always"),
             Key::value("sign_always"),
             Key::value("leading_zero"),
+            Key::value("without_point"),
             Key::value("spaces"),
             Key::value("number_start"),
             Key::value("number_step"),
@@ -247,6 +248,10 @@ pub(super) struct TextFile {
     pub(super) sign_always: Option<bool>,
     /// X0.5 instead of X.5.
     pub(super) leading_zero: Option<bool>,
+    /// What 1 without a point is, mm or degrees, where a control may count least increments: 1.0 or 0.001. Without it a number
+    /// that has no point is not read there.
+    #[schemars(with = "Option<f64>")]
+    pub(super) without_point: Option<Spanned<f64>>,
     /// G1 X30 F200 instead of G1X30F200.
     pub(super) spaces: Option<bool>,
     /// The first block number.

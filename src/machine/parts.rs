@@ -1,7 +1,7 @@
 //! What a machine file says, as types.
 
 use super::template::Template;
-use crate::decimal::Spelling;
+use crate::decimal::{Decimal, Spelling};
 use crate::dialect::{Dialect, Motion};
 use crate::geom::rotation::Order;
 use crate::ir::Auxiliary;
@@ -169,6 +169,8 @@ pub struct Text {
     pub sign_always: bool,
     /// `X0.5` instead of `X.5`.
     pub leading_zero: bool,
+    /// What 1 without a point is, mm or degrees, on a control that may count least increments; none: nobody said.
+    pub without_point: Option<Decimal>,
     /// `G1 X30` instead of `G1X30`.
     pub spaces: bool,
     /// The first block number.

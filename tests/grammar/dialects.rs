@@ -23,14 +23,14 @@ const LEXICAL: &[&str] = &[
     "block-unfinished", // Klartext: the text ends behind ~
     "block-skip",       // ISO: /
     "remark-open",      // ISO: a remark without its end
-    "m-function",       // Klartext: M in a block of moves
+    "m-function",       // M in a block
     "parameter",        // Klartext: Q
     "incremental",      // Klartext: I
     "compensation",     // Klartext: RL, RR
     "degree-too-high",  // Sinumerik: more than four coefficients
     "degree-range",     // Sinumerik: SD other than 2, 3
     "splinepath",       // Sinumerik: arguments of another form
-    "fgroup",           // Sinumerik: arguments of another form
+    "fgroup",           // Sinumerik: arguments that are no linear axes
 ];
 
 /// The same, where a word stands alone: in a block with others `code-refused` also says that the work offset changes, and
@@ -40,7 +40,7 @@ const ALONE: &[&str] = &["code-refused", "axis-unknown", "short-way-axis"];
 /// The default machine of a dialect without header and footer, so that a line can stand alone.
 fn bare(name: &str) -> Machine {
     let own = match name {
-        "mazak" => "[feed]\nrotary = \"inverse-time\"\n",
+        "mazak" => "[feed]\nrotary = \"inverse-time\"\n[text]\nwithout_point = 1.0\n",
         "sinumerik" => "[arcs]\nplanes = true\n",
         _ => "",
     };

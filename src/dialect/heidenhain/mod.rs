@@ -87,7 +87,13 @@ pub const DIALECT: Dialect = Dialect {
     granted: &[
         Granted { what: "coordinates are in mm", right: &["MM"], wrong: &["INCH"] },
         Granted { what: "F is per minute", right: &["M137"], wrong: &["M136"] },
+        Granted { what: "the path is that of the tool's centre", right: &["R0"], wrong: &["RL", "RR"] },
+        Granted { what: "rotary axes go as programmed", right: &["M127"], wrong: &["M126"] },
     ],
+    least_increments: false,
+    passes_labels: true,
+    replaces_shift: None,
+    adds_shift: &[],
     inverse_time: false,
     round: Round::Step,
     arcs: Arcs {

@@ -18,6 +18,8 @@
 
 mod arcs;
 mod closing;
+mod fixed;
+mod refused;
 
 use super::words::{Word, coordinate, cut, is_continuation, word};
 use crate::decimal::{Decimal, Spelling};
@@ -129,6 +131,10 @@ struct Reader<'t, 'm> {
     center: Option<[i64; 2]>,
     /// Whether X and Y stand where a CP left them, which is no place in decimals.
     loose: [bool; 2],
+    /// Which axes a block named absolutely since a line of the machine file changed from where they count.
+    stated: [bool; MAX_AXES],
+    /// Remarks behind words of the block in the making.
+    remarks: Vec<(String, Span)>,
 }
 
 /// Reads a program.
@@ -144,6 +150,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         unmarked: None,
         center: None,
         loose: [false; 2],
+        stated: [false; MAX_AXES],
+        remarks: Vec::new(),
     };
     // Whether the line before, one of the fixed ones, goes on here: then there is no number.
     let mut goes_on = false;
@@ -173,8 +181,17 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.flush();
         }
         let span = Span::new(source, line.range());
-        goes_on = frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed;
+        let (code, remark) = match body.split_once(';') {
+            Some((code, _)) if frame.parts_remarks() && !code.is_empty() && !goes_on => {
+                (code.trim_ascii_end(), &body[code.len() + 1..])
+            }
+            Some(_) | None => (body, ""),
+        };
+        goes_on = frame.meet(code, span, line.range(), &mut reader.assembler) == Met::Fixed;
         if goes_on {
+            reader.fixed(code, &frame);
+            reader.remark(remark, span);
+            reader.tell_remarks();
             goes_on = ends_marked(body);
             continue;
         }
@@ -193,9 +210,10 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     reader.warn();
     frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.start_complete(), frame.footer_complete());
-    let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
-    Ok(Warned { value: reading, warnings: warned.warnings })
+    let Warned { value: (decimals, stated), warnings } = reader.assembler.finish()?;
+    let misnumbered = numbering.misnumbered();
+    let reading = Reading { decimals, header, footer, misnumbered, stated: Box::new(stated) };
+    Ok(Warned { value: reading, warnings })
 }
 
 /// Whether a line goes on in the next: it ends with `~`.
@@ -274,12 +292,15 @@ impl<'t> Reader<'t, '_> {
                 _ => self.meant(&block, first.number, head, span),
             }
         }
-        if keyword == "CC" {
-            return;
+        if keyword != "CC" {
+            // Whatever is wrong with a block, the next one starts from its end.
+            for (axis, units) in block.named() {
+                self.assembler.position[*axis] = Some(*units);
+                self.stated[*axis] = true;
+            }
         }
-        // Whatever is wrong with a block, the next one starts from its end.
-        for (axis, units) in block.named() {
-            self.assembler.position[*axis] = Some(*units);
+        if self.run.is_none() {
+            self.tell_remarks();
         }
     }
 
@@ -305,6 +326,11 @@ impl<'t> Reader<'t, '_> {
                 // `other` takes whatever is no blank and no comment.
                 Err(_) => break,
             }
+        }
+        if let Some(remark) = rest.strip_prefix(';') {
+            let end = start + code.len();
+            let span = self.assembler.span(end - rest.len()..end);
+            self.remark(remark, span);
         }
         goes_on
     }
@@ -349,7 +375,11 @@ impl<'t> Reader<'t, '_> {
             }
             Word::Rapid => block.rapid = true,
             Word::Uncompensated => {}
-            Word::Rotation(sense) => block.rotation = Some(sense),
+            Word::Rotation(sense) => {
+                if block.rotation.replace(sense).is_some() {
+                    self.assembler.error("word-twice", "DR stands twice in this block", range);
+                }
+            }
             Word::Other(text) => self.other(text, range),
         }
     }
@@ -364,14 +394,6 @@ impl<'t> Reader<'t, '_> {
         block.named[block.count] = (axis, units);
         block.places[block.count] = (range.start, range.end);
         block.count += 1;
-    }
-
-    fn axis_unknown(&mut self, letter: u8, range: Range<usize>) {
-        self.assembler.error(
-            "axis-unknown",
-            format!("{} is not an axis of this machine", char::from(letter)),
-            range,
-        );
     }
 
     fn coefficient(
@@ -407,59 +429,6 @@ impl<'t> Reader<'t, '_> {
         *place = Some(self.assembler.coefficient(axis, value));
         if coefficients.places[axis] == (0, 0) {
             coefficients.places[axis] = (range.start, range.end);
-        }
-    }
-
-    /// A word that is not understood, and why.
-    fn other(&mut self, text: &str, range: Range<usize>) {
-        let bytes = text.as_bytes();
-        let digits = |from: usize| from < bytes.len() && bytes[from..].iter().all(u8::is_ascii_digit);
-        let (id, message) = if text == "RL" || text == "RR" {
-            ("compensation", format!("radius compensation {text} is not read: the path would be another one"))
-        } else if let [b'N', b'X'..=b'Z', ..] = bytes {
-            (
-                "compensation",
-                "normals of the surface compensate the radius: the path would be another one".to_owned(),
-            )
-        } else if bytes.first() == Some(&b'M') && digits(1) {
-            ("m-function", format!("{text} is not read in a block of moves"))
-        } else if bytes.contains(&b'Q') {
-            ("parameter", format!("Q parameters are read as feeds only, not as in `{text}`"))
-        } else if bytes.first() == Some(&b'I') {
-            (
-                "incremental",
-                format!("steps are read of axes that wrap at 360 degrees only, not as in `{text}`"),
-            )
-        } else {
-            ("word-unknown", format!("`{text}` is not understood"))
-        };
-        let span = self.assembler.span(range);
-        let mut diagnostic = Diagnostic::error(id, message).at(span, "");
-        if id == "m-function" {
-            diagnostic =
-                diagnostic.hint("M functions are read where they are whole lines of the machine file");
-        }
-        self.assembler.diagnostics.push(diagnostic);
-    }
-
-    /// A block of a kind that is not read, with the lines that continue it.
-    fn unknown(&mut self, body: &'t str, start: usize) {
-        let length = body.find([' ', '\t']).unwrap_or(body.len());
-        let word = &body[..length];
-        let message = if word.is_empty() {
-            "this block has no word that is understood".to_owned()
-        } else {
-            format!("`{word}` blocks are not read")
-        };
-        let span = self.assembler.span(start..start + length);
-        self.assembler.diagnostics.push(
-            Diagnostic::error("block-unknown", message)
-                .at(span, "")
-                .hint("L, LN, C, CC, CP, SPL, comments and the lines of the machine file are read"),
-        );
-        let mut goes_on = ends_marked(body);
-        while goes_on && let Some(next) = self.lines.next() {
-            goes_on = ends_marked(next.text);
         }
     }
 
@@ -565,6 +534,7 @@ impl<'t> Reader<'t, '_> {
         if let Some(Run { polynomial, span }) = self.run.take() {
             let end = polynomial.blocks.last().map_or(polynomial.start, |block| block.end);
             self.assembler.curve(Written::Polynomial(polynomial), &end, span);
+            self.tell_remarks();
         }
     }
 

@@ -95,6 +95,10 @@ pub const MAZAK: Dialect = Dialect {
         Granted { what: "coordinates are in mm", right: &["G21"], wrong: &["G20"] },
         Granted { what: "F is per minute", right: &["G94"], wrong: &["G93", "G95"] },
         Granted { what: "the plane is XY", right: &["G17"], wrong: &["G18", "G19"] },
+        Granted { what: "the path is that of the tool's centre", right: &["G40"], wrong: &["G41", "G42"] },
+        Granted { what: "coordinates are not turned", right: &["G69"], wrong: &["G68"] },
+        Granted { what: "coordinates are not scaled", right: &["G50"], wrong: &["G51"] },
+        Granted { what: "coordinates are not mirrored", right: &["G50.1"], wrong: &["G51.1"] },
         // Type 1 of tool centre point control takes places of the rotary axes, and the writer has none.
         Granted {
             what: "I J K are the direction of the tool where its tip is led",
@@ -102,6 +106,10 @@ pub const MAZAK: Dialect = Dialect {
             wrong: &["G43.4"],
         },
     ],
+    least_increments: true,
+    passes_labels: false,
+    replaces_shift: None,
+    adds_shift: &["G91", "G92", "G51", "G51.1", "G68"],
     inverse_time: true,
     round: Round::Place,
     arcs: Arcs {

@@ -1,24 +1,26 @@
 //! Reads a program of an ISO control, in two layers: blocks as written, then what they mean.
 //!
-//! A word that is not understood is an error at its place. A number without a decimal point is read as it stands: X30 is
-//! 30 mm, though a control set to least increments takes it for 0.003 mm. A remark behind the words of a block is passed
-//! over. A remark in a line of its own ends no spline; where one stands inside a spline, it is read as coming after it.
+//! A word that is not understood is an error at its place. What a number without a decimal point is, the machine file says: X30 is
+//! 30 mm on one control and 0.030 mm on another. A remark behind the words of a block is read as coming after it. No remark ends a
+//! spline; where one stands inside a spline, it is read as coming after it.
 
+mod codes;
+mod fixed;
 mod nurbs;
 mod tool;
 mod words;
 
 use super::{Offset, is_block};
 use crate::decimal::Decimal;
-use crate::diagnostic::{Diagnostics, Warned};
+use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::dialect::Reading;
 use crate::dialect::arc;
 use crate::dialect::assemble::Assembler;
 use crate::dialect::block::{Lines, MAX_DIAGNOSTICS, Numbering, block_number};
 use crate::dialect::frame::{Frame, Met};
-use crate::dialect::{Form, Reading};
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
-use crate::machine::{Machine, RotaryFeed};
+use crate::machine::Machine;
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
 use nurbs::NurbsRun;
@@ -35,26 +37,6 @@ enum Motion {
     Nurbs,
     Through,
 }
-
-/// Codes that state what the IR assumes anyway, and codes of how exactly the control runs, which move no path; in tenths.
-const STATE_CODES: &[i64] = &[150, 210, 400, 490, 610, 611, 640, 670, 690, 800, 900, 940, 970, 980];
-
-/// Codes under which the same words are another path, and what they mean; in tenths.
-const REFUSED_CODES: &[(i64, &str)] = &[
-    (40, "a dwell is not read"),
-    (200, "inches are not read"),
-    (280, "the home position is the machine's own"),
-    (410, "cutter radius compensation is not read"),
-    (420, "cutter radius compensation is not read"),
-    (434, "tool centre point control is not read"),
-    (435, "tool centre point control is not read"),
-    (530, "machine coordinates are not read"),
-    (612, "modal spline interpolation makes curves of lines, which only the control knows"),
-    (680, "a turned coordinate system is not read"),
-    (910, "incremental positions are not read"),
-    (930, "inverse time feed is not read"),
-    (950, "feed a revolution is not read"),
-];
 
 /// A value and where it stands.
 type Placed = (Decimal, Range<usize>);
@@ -80,6 +62,8 @@ struct Block {
     /// G43.
     offset: Option<Range<usize>>,
     plane: Option<Plane>,
+    /// The code of each group that a block has one of, in tenths; 0 for none.
+    codes: [i64; 9],
 }
 
 impl Block {
@@ -94,6 +78,7 @@ enum Run {
     Through { start: Units, units: Vec<i64>, lines: Vec<u32>, span: Span },
 }
 
+#[allow(clippy::struct_excessive_bools, reason = "each is about another word")]
 struct Reader<'m> {
     assembler: Assembler<'m>,
     motion: Motion,
@@ -109,8 +94,10 @@ struct Reader<'m> {
     offset_again: Option<u32>,
     /// Whether the register may have another number than the tool.
     offset_free: bool,
-    /// The work offset in force, G54 to G59, in tenths.
-    work_offset: Option<i64>,
+    /// Whether a second % ended the text.
+    ended: bool,
+    /// Whether a line was read.
+    begun: bool,
     warned_left_out: bool,
     /// G17, G18 or G19.
     plane: Plane,
@@ -133,7 +120,8 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         offset_tool: None,
         offset_again: None,
         offset_free: false,
-        work_offset: None,
+        ended: false,
+        begun: false,
         warned_left_out: false,
         plane: Plane::Xy,
     };
@@ -153,6 +141,11 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
             reader.flush();
             continue;
         }
+        if reader.ended {
+            let message = "text behind the % that ends the program";
+            reader.error("text-after-end", message, line.range());
+            break;
+        }
         let start = line.start + line.text.len() - body.len();
         let span = Span::new(source, line.range());
         // A line that begins with an axis is a move, and by far the most are; only others can be lines of the frame.
@@ -160,27 +153,31 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         let is_move = frame.header_complete()
             && reader.motion != Motion::None
             && reader.assembler.letter(first).is_some();
-        if !is_move || frame.is_in_doubt() {
-            if reader.run.is_some() && frame.may_begin(body) {
+        if !is_move || frame.is_ending() {
+            let (code, remark) = if frame.parts_remarks() { parted(body) } else { (body, "") };
+            if reader.run.is_some() && frame.may_begin(code) {
                 reader.flush();
             }
-            if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
-                reader.tool_line(body, &offset, line.range());
-                reader.home_line(body);
+            if frame.meet(code, span, line.range(), &mut reader.assembler) == Met::Fixed {
+                reader.fixed(code, &frame, span);
+                reader.tool_line(code, &offset, line.range());
+                reader.home_line(code);
                 if reader.assembler.begins_tip_control() {
                     // Its lines hold the length of the tool.
                     reader.offset_due = None;
                 }
-                // The machine's own lines may hold a work offset; another one later would be another place.
-                let mut codes =
-                    body.split_whitespace().filter_map(|code| code.strip_prefix("G5")?.parse().ok());
-                if let Some(digit) = codes.rfind(|digit: &i64| (4..=9).contains(digit)) {
-                    reader.work_offset = Some(500 + 10 * digit);
+                if !remark.is_empty()
+                    && frame.meet(remark, span, line.range(), &mut reader.assembler) == Met::Other
+                {
+                    let start = line.start + line.text.len() - remark.len();
+                    reader.block(remark, start, line.number, span);
                 }
+                reader.begun = true;
                 continue;
             }
         }
         reader.block(body.strip_suffix(';').unwrap_or(body), start, line.number, span);
+        reader.begun = true;
         if MAX_DIAGNOSTICS < reader.assembler.diagnostics.0.len() {
             break;
         }
@@ -188,9 +185,18 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     reader.flush();
     frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.start_complete(), frame.footer_complete());
-    let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
-    Ok(Warned { value: reading, warnings: warned.warnings })
+    let Warned { value: (decimals, stated), warnings } = reader.assembler.finish()?;
+    let misnumbered = numbering.misnumbered();
+    let reading = Reading { decimals, header, footer, misnumbered, stated: Box::new(stated) };
+    Ok(Warned { value: reading, warnings })
+}
+
+/// The words of a block, and the remarks behind them.
+fn parted(line: &str) -> (&str, &str) {
+    match line.find('(') {
+        Some(at) if 0 < at && line.ends_with(')') => (line[..at].trim_ascii_end(), &line[at..]),
+        Some(_) | None => (line, ""),
+    }
 }
 
 impl Reader<'_> {
@@ -201,66 +207,103 @@ impl Reader<'_> {
     /// One block: its words, then what they do together.
     fn block(&mut self, code: &str, start: usize, line: u32, span: Span) {
         let mut block = Block::default();
-        let (mut remark, mut words) = (None, 0);
+        let (mut remarks, mut words) = (Vec::new(), false);
         let mut rest = code;
         if rest == "%" {
+            self.ended = self.begun;
             return;
         }
         while !rest.is_empty() {
             let at = start + (code.len() - rest.len());
             // Most words are addresses, and go no way round through a `Word`.
             if let Ok((after, (letter, value))) = address(rest) {
-                words += 1;
-                self.addressed(letter, value, at..at + (rest.len() - after.len()), &mut block);
+                let range = at..at + (rest.len() - after.len());
+                words = true;
+                self.addressed(letter, value, &rest[..range.len()], range, &mut block);
                 rest = after.trim_ascii_start();
                 continue;
             }
             let Ok((after, word)) = word(rest) else { return self.unreadable(rest, at) };
             let range = at..at + (rest.len() - after.len());
+            words |= !matches!(word, Word::Remark(_));
             match word {
-                Word::Remark(text) => remark = Some(text),
+                Word::Remark(text) => remarks.push(text.trim()),
                 Word::Address(letter, value) => {
-                    words += 1;
-                    self.addressed(letter, value, range, &mut block);
+                    self.addressed(letter, value, &rest[..range.len()], range, &mut block);
                 }
                 Word::FeedParameter(number) => {
-                    words += 1;
                     if let Some(value) = self.assembler.parameter(number, range.clone()) {
                         self.address(b'F', value, range, &mut block);
                     }
                 }
-                Word::Assignment(name, value) => {
-                    words += 1;
-                    match self.assembler.axis(name) {
-                        Some(axis) => self.axis(&mut block, axis, value, range),
-                        None => self.error(
-                            "axis-unknown",
-                            format!("{name} is not an axis of this machine"),
-                            range,
-                        ),
+                Word::Assignment(name, value) => match self.assembler.axis(name) {
+                    Some(axis) => {
+                        let value = self.length(b'X', value, &rest[..range.len()], &range);
+                        self.axis(&mut block, axis, value, range);
                     }
-                }
+                    None => {
+                        self.assembler.axis_unknown(name, range);
+                    }
+                },
             }
             rest = after.trim_ascii_start();
         }
-        match remark {
-            Some(text) if words == 0 => {
-                let text = text.trim().to_owned();
-                if self.run.is_some() {
-                    self.remarks.push((text, span));
-                } else {
-                    self.remark(text, span);
-                }
+        if words {
+            self.act(block, line, span);
+        }
+        for text in remarks {
+            let text = text.to_owned();
+            if self.run.is_some() {
+                self.remarks.push((text, span));
+            } else {
+                self.remark(text, span);
             }
-            Some(_) | None => self.act(block, line, span),
         }
     }
 
-    /// A letter and a number.
+    /// A length or an angle as it counts: without a point it may be in least increments.
     #[inline]
-    fn addressed(&mut self, letter: u8, value: Decimal, range: Range<usize>, block: &mut Block) {
+    fn length(&mut self, letter: u8, value: Decimal, digits: &str, range: &Range<usize>) -> Decimal {
+        if value.is_zero() || digits.as_bytes().contains(&b'.') {
+            value
+        } else {
+            self.without_point(letter, value, range)
+        }
+    }
+
+    #[cold]
+    fn without_point(&mut self, letter: u8, value: Decimal, range: &Range<usize>) -> Decimal {
+        let Some(one) = self.assembler.machine.text.without_point else {
+            let word = format!("{}{value}", char::from(letter));
+            let message = format!(
+                "`{word}` has no point: it is {value} on one control and a thousandth of that on another"
+            );
+            let diagnostic =
+                Diagnostic::error("point-missing", message).at(self.assembler.span(range.clone()), "");
+            self.assembler.diagnostics.push(diagnostic.hint(format!(
+                "write `{word}.`, or say in the machine file what 1 is: [text] without_point = 1.0 or 0.001"
+            )));
+            return value;
+        };
+        let scaled = value.units(0).and_then(|count| one.times(count));
+        if scaled.is_none() {
+            self.error("number-range", "this number is out of range", range.clone());
+        }
+        scaled.unwrap_or(value)
+    }
+
+    /// A letter and a number, and both as they stand.
+    #[inline]
+    fn addressed(&mut self, letter: u8, value: Decimal, word: &str, range: Range<usize>, block: &mut Block) {
         match self.assembler.letter(letter) {
-            Some(axis) => self.axis(block, axis, value, range),
+            Some(axis) => {
+                let value = self.length(letter, value, word, &range);
+                self.axis(block, axis, value, range);
+            }
+            None if matches!(letter, b'I' | b'J' | b'K') => {
+                let value = self.length(letter, value, word, &range);
+                self.address(letter, value, range, block);
+            }
             None => self.address(letter, value, range, block),
         }
     }
@@ -325,6 +368,9 @@ impl Reader<'_> {
             b'Q' => &mut block.q,
             b'H' => &mut block.h,
             // The program's number; its name stands in the header.
+            b'O' if self.assembler.number != 0 || self.assembler.has_steps() => {
+                return self.error("program-start", format!("another program starts here: O{value}"), range);
+            }
             b'O' if value.units(0).is_some_and(|number| 0 < number) => {
                 if self.assembler.name.is_empty() {
                     self.assembler.name = format!("O{value}");
@@ -334,6 +380,10 @@ impl Reader<'_> {
                     self.assembler.number = number.filter(|number| *number <= 9999).unwrap_or(0);
                 }
                 return;
+            }
+            b'M' => return self.m_function(value, range),
+            b'U'..=b'Z' | b'A'..=b'C' => {
+                return self.assembler.axis_unknown(&char::from(letter).to_string(), range);
             }
             _ => {
                 return self.error(
@@ -351,77 +401,6 @@ impl Reader<'_> {
             );
         }
         *slot = Some((value, range));
-    }
-
-    /// A G code.
-    fn code(&mut self, value: Decimal, range: Range<usize>, block: &mut Block) {
-        let dialect = self.assembler.machine.dialect;
-        let tenths = value.units(1);
-        let motion = match tenths {
-            Some(0) => Motion::Rapid,
-            Some(10) => Motion::Line,
-            Some(20) => Motion::Arc(Sense::Clockwise),
-            Some(30) => Motion::Arc(Sense::CounterClockwise),
-            Some(tenths @ (170 | 180 | 190)) => {
-                let plane = match tenths {
-                    170 => Plane::Xy,
-                    180 => Plane::Zx,
-                    _ => Plane::Yz,
-                };
-                if plane == Plane::Xy || self.assembler.machine.arc_planes {
-                    block.plane = Some(plane);
-                } else {
-                    self.length_elsewhere(plane, "[arcs] planes = true says that it does not", range);
-                }
-                return;
-            }
-            Some(62) if dialect.motion_of(Form::Nurbs).is_some() => Motion::Nurbs,
-            Some(61) if dialect.motion_of(Form::Through(ThroughKind::Fine)).is_some() => Motion::Through,
-            Some(tenths @ (50 | 51)) => {
-                block.high_speed = Some((tenths, range));
-                return;
-            }
-            Some(430) => {
-                block.offset = Some(range);
-                return;
-            }
-            Some(tenths @ (540 | 550 | 560 | 570 | 580 | 590)) => {
-                if self.work_offset.is_some_and(|known| known != tenths) {
-                    self.error(
-                        "code-refused",
-                        format!("G{value}: another work offset is another place"),
-                        range,
-                    );
-                }
-                self.work_offset = Some(tenths);
-                return;
-            }
-            Some(tenths @ (930 | 940)) if self.assembler.machine.rotary_feed == RotaryFeed::InverseTime => {
-                self.flush();
-                self.assembler.inverse = tenths == 930;
-                return;
-            }
-            Some(490) if self.assembler.leads_tip() => {
-                let message = "G49 ends leading the tip, with the lines of the machine file";
-                return self.error("tip-control", message, range);
-            }
-            Some(490) if self.offset_tool.is_some() => {
-                let message = "G49 ends the length of the tool, with the lines of the machine file";
-                return self.error("tool-offset", message, range);
-            }
-            Some(tenths) if STATE_CODES.contains(&tenths) => return,
-            _ => {
-                let refused = REFUSED_CODES.iter().find(|(code, _)| Some(*code) == tenths);
-                return match refused {
-                    Some((_, why)) => self.error("code-refused", format!("G{value}: {why}"), range),
-                    None => self.error("word-unknown", format!("`G{value}` is not understood"), range),
-                };
-            }
-        };
-        if block.motion.is_some_and(|other| other != motion) {
-            return self.error("codes-conflict", "two codes of motion in one block", range);
-        }
-        block.motion = Some(motion);
     }
 
     /// What the words of a block do together.
@@ -481,6 +460,10 @@ impl Reader<'_> {
         }
         let center = [block.i.take(), block.j.take(), block.k.take_if(|_| arc)];
         let offsets = center.map(|word| word.map(|(value, _)| value));
+        if let (true, Some((_, range))) = (arc, &block.r) {
+            let message = "an arc by its radius is not read; its centre in I J K is";
+            return self.error("arc-center", message, range.clone());
+        }
         for (name, word) in [("K", block.k.take()), ("R", block.r.take()), ("P", block.p.take())] {
             if let Some((_, range)) = word {
                 self.error("spline-word", format!("{name} belongs to G06.2"), range);
@@ -514,12 +497,14 @@ impl Reader<'_> {
     ///     | "G", { "0" }, "5.1", { blank }, "Q", ( "0" | "1" )`, also with words between and beside them
     fn high_speed(&mut self, code: i64, block: &mut Block, range: Range<usize>) {
         let whole = |word: Option<Placed>| word.and_then(|(value, _)| value.units(0));
-        let known = if code == 50 {
-            matches!(whole(block.p.take()), Some(0 | 1 | 2 | 10_000))
+        let how = if code == 50 {
+            whole(block.p.take()).filter(|how| matches!(how, 0 | 1 | 2 | 10_000))
         } else {
-            matches!(whole(block.q.take()), Some(0 | 1))
+            whole(block.q.take()).filter(|how| matches!(how, 0 | 1))
         };
-        if !known {
+        if let Some(how) = how {
+            self.high_speed_runs(code, how, &range, false);
+        } else {
             self.error("code-refused", "only G05 P0, P1, P2, P10000 and G05.1 Q0, Q1 are read", range);
         }
     }

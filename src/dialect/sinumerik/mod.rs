@@ -130,7 +130,12 @@ pub const DIALECT: Dialect = Dialect {
         Granted { what: "coordinates are in mm", right: &["G71", "G710"], wrong: &["G70", "G700"] },
         Granted { what: "F is per minute", right: &["G94"], wrong: &["G93", "G95", "G96", "G97"] },
         Granted { what: "the plane is XY", right: &["G17"], wrong: &["G18", "G19"] },
+        Granted { what: "the path is that of the tool's centre", right: &["G40"], wrong: &["G41", "G42"] },
     ],
+    least_increments: false,
+    passes_labels: true,
+    replaces_shift: Some("TRANS"),
+    adds_shift: &["ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR", "G58", "G59", "G91"],
     inverse_time: false,
     round: Round::Shortest,
     arcs: Arcs {

@@ -3,6 +3,7 @@
 //! A word that is not understood is an error at its place.
 
 mod arcs;
+mod fixed;
 mod orientation;
 mod path;
 mod spline;
@@ -11,7 +12,7 @@ mod state;
 use super::words::{Word, address, word};
 use super::write::SECOND;
 use crate::decimal::Decimal;
-use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
+use crate::diagnostic::{Diagnostics, Warned};
 use crate::dialect::Reading;
 use crate::dialect::arc;
 use crate::dialect::assemble::Assembler;
@@ -23,10 +24,10 @@ use crate::ir::{
     WrittenPolynomial,
 };
 use crate::machine::Machine;
-use crate::pass::check::moving;
 use crate::source::{SourceId, Span};
 use crate::units::{Kind, MAX_AXES};
-use path::{denominator_fault, linear_in_parameter};
+use fixed::{DEGREE, PLANE, TRANS, parted};
+use path::denominator_fault;
 use std::ops::Range;
 
 /// G group 1.
@@ -41,10 +42,6 @@ enum Motion {
     Bspline,
     Through(ThroughKind),
 }
-
-/// Codes that state what the IR assumes anyway. Another work offset than G54, or smoothing, is another path.
-const STATE_CODES: [&str; 11] =
-    ["G40", "G54", "G60", "G64", "G601", "G71", "G90", "G94", "SOFT", "COMPOF", "TRAFOOF"];
 
 /// a₂ … a₅ of each axis.
 type Coefficients = [[Decimal; COEFFICIENTS]; MAX_AXES];
@@ -74,6 +71,10 @@ struct Block {
     turns: Option<u32>,
     feed: Option<Decimal>,
     starts_spline: bool,
+    /// The word of motion.
+    motion: Option<Motion>,
+    /// Of which kinds a block has words, of those that it has one of.
+    kinds: u16,
 }
 
 impl Block {
@@ -116,7 +117,11 @@ struct Reader<'m> {
     second: bool,
     /// G17, G18 or G19.
     plane: Plane,
+    /// Whether D calls the length of a tool; none before any D.
+    length: Option<bool>,
     run: Option<Run>,
+    /// Remarks behind words of the spline in the making.
+    remarks: Vec<(String, Span)>,
 }
 
 /// Reads a program.
@@ -132,7 +137,9 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         splinepath: Vec::new(),
         second: false,
         plane: Plane::Xy,
+        length: None,
         run: None,
+        remarks: Vec::new(),
     };
     for line in lines {
         let indent = line.text.len() - line.text.trim_ascii_start().len();
@@ -159,14 +166,24 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         // A block of one axis letter and a digit is a move; only others can be lines of the frame.
         let is_move = frame.header_complete()
             && reader.assembler.letter(body.as_bytes().first().copied().unwrap_or(0)).is_some();
-        if !is_move || !reader.is_cutting() || frame.is_in_doubt() {
+        if !is_move || !reader.is_cutting() || frame.is_ending() {
+            let (code, remark) = match parted(body) {
+                (code, remark) if !code.is_empty() && frame.parts_remarks() => (code, remark),
+                _ => (body, ""),
+            };
             let steps_before = reader.run.is_some();
-            if steps_before && frame.may_begin(body) {
+            if steps_before && frame.may_begin(code) {
                 reader.flush();
             }
-            if frame.meet(body, span, line.range(), &mut reader.assembler) == Met::Fixed {
+            if frame.meet(code, span, line.range(), &mut reader.assembler) == Met::Fixed {
+                reader.fixed(code, &frame, span);
                 // Lines of the machine file that lead the tip also say how the tool turns.
                 reader.second &= !reader.assembler.begins_tip_control();
+                if !remark.is_empty()
+                    && frame.meet(remark, span, line.range(), &mut reader.assembler) == Met::Other
+                {
+                    reader.remark(remark, span);
+                }
                 continue;
             }
         }
@@ -184,9 +201,10 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
     reader.flush();
     frame.finish(text.len(), &mut reader.assembler);
     let (header, footer) = (frame.start_complete(), frame.footer_complete());
-    let warned = reader.assembler.finish()?;
-    let reading = Reading { decimals: warned.value, header, footer, misnumbered: numbering.misnumbered() };
-    Ok(Warned { value: reading, warnings: warned.warnings })
+    let Warned { value: (decimals, stated), warnings } = reader.assembler.finish()?;
+    let misnumbered = numbering.misnumbered();
+    let reading = Reading { decimals, header, footer, misnumbered, stated: Box::new(stated) };
+    Ok(Warned { value: reading, warnings })
 }
 
 impl Reader<'_> {
@@ -218,6 +236,8 @@ impl Reader<'_> {
             turns: None,
             feed: None,
             starts_spline: false,
+            motion: None,
+            kinds: 0,
         };
         let mut rest = code.trim_ascii_start();
         while !rest.is_empty() && !rest.starts_with(';') {
@@ -229,28 +249,50 @@ impl Reader<'_> {
                 continue;
             }
             match word(rest) {
-                Ok((after, word)) => {
+                // `X=IC(10)`: a name, and then what is no value.
+                Ok((after, word))
+                    if !(matches!(word, Word::Keyword(_)) && after.trim_ascii_start().starts_with('=')) =>
+                {
                     let range = at..at + (rest.len() - after.len());
                     self.word(word, range, &mut block);
                     rest = after.trim_ascii_start();
                 }
-                Err(_) => {
-                    let length = rest.find([' ', '\t', ';']).unwrap_or(rest.len());
-                    self.assembler.error("word-unreadable", "this word cannot be read", at..at + length);
-                    return;
-                }
+                Ok(_) | Err(_) => return self.unreadable(rest, at),
             }
         }
         if block.starts_spline {
             self.flush();
+        } else if block.kinds & DEGREE != 0 && self.run.as_ref().is_some_and(|run| run.degree != self.degree)
+        {
+            let message = "SD stands in the first block of a spline";
+            self.assembler.error("spline-word", message, span.start as usize..span.end as usize);
         }
         if let Some(feed) = block.feed {
             self.set_feed(feed, span);
         }
         if !self.directed(&mut block, span) {
+            return self.remark(rest, span);
+        }
+        if block.kinds & TRANS != 0 {
+            return self.ends_shift(&block, span);
+        }
+        if self.has_length(&block, span) {
+            self.moved(&block, line, span);
+        }
+        self.remark(rest, span);
+    }
+
+    /// A remark behind the words of a block, which ends no spline.
+    fn remark(&mut self, text: &str, span: Span) {
+        let text = text.trim_start_matches(';').trim();
+        if text.is_empty() {
             return;
         }
-        self.moved(&block, line, span);
+        if self.run.is_some() {
+            self.remarks.push((text.to_owned(), span));
+        } else {
+            self.assembler.step(Step::Comment(text.to_owned()), span);
+        }
     }
 
     /// A name and a number.
@@ -328,11 +370,18 @@ impl Reader<'_> {
             }
             Word::Call("FGROUP", arguments) => {
                 // Feed and synchronisation are those of the geometry axes; another group means another path.
-                let axes = self.assembler.machine.axes;
-                let linear =
-                    |name: &str| self.assembler.axis(name).is_some_and(|i| axes.kind(i) == Kind::Linear);
-                if !arguments.trim().is_empty() && !arguments.split(',').map(str::trim).all(linear) {
-                    self.assembler.error("fgroup", "only linear axes are read in FGROUP", range);
+                if !arguments.trim().is_empty() && !self.is_path_group(arguments, false) {
+                    let axes = self.assembler.machine.axes;
+                    let linear =
+                        |name: &str| self.assembler.axis(name).is_some_and(|i| axes.kind(i) == Kind::Linear);
+                    let id = if arguments.split(',').map(str::trim).all(linear) {
+                        "fgroup-axes"
+                    } else {
+                        "fgroup"
+                    };
+                    let names = self.assembler.machine.linear_names();
+                    let message = format!("FGROUP names other axes than {names}, so that F is another speed");
+                    self.assembler.error(id, message, range);
                 }
             }
             Word::Call(name, _) => {
@@ -360,19 +409,31 @@ impl Reader<'_> {
 
     fn address(&mut self, name: &str, value: Decimal, range: Range<usize>, block: &mut Block) {
         let whole = value.units(0);
+        if name != "G" {
+            self.once(name, &range, block);
+        }
         match (name, whole) {
-            ("G", Some(0)) => self.set_motion(Motion::Rapid),
-            ("G", Some(1)) => self.set_motion(Motion::Line),
-            ("G", Some(2)) => self.set_motion(Motion::Arc(Sense::Clockwise)),
-            ("G", Some(3)) => self.set_motion(Motion::Arc(Sense::CounterClockwise)),
-            ("G", Some(17)) => self.plane = Plane::Xy,
-            ("G", Some(18)) => self.take_plane(Plane::Zx, range),
-            ("G", Some(19)) => self.take_plane(Plane::Yz, range),
+            ("G", Some(0)) => self.motion_word(Motion::Rapid, &range, block),
+            ("G", Some(1)) => self.motion_word(Motion::Line, &range, block),
+            ("G", Some(2)) => self.motion_word(Motion::Arc(Sense::Clockwise), &range, block),
+            ("G", Some(3)) => self.motion_word(Motion::Arc(Sense::CounterClockwise), &range, block),
+            ("G", Some(17..=19)) if block.kinds & PLANE != 0 => {
+                self.assembler.error("codes-conflict", "two planes in one block", range);
+            }
+            ("G", Some(code @ 17..=19)) => {
+                block.kinds |= PLANE;
+                match code {
+                    17 => self.plane = Plane::Xy,
+                    18 => self.take_plane(Plane::Zx, range),
+                    _ => self.take_plane(Plane::Yz, range),
+                }
+            }
             ("TURN", _) => self.turn(value, range, block),
             ("I", _) => block.center[0] = Some(value),
             ("J", _) => block.center[1] = Some(value),
             ("K", _) => block.center[2] = Some(value),
-            ("G", Some(code)) if STATE_CODES.contains(&format!("G{code}").as_str()) => {}
+            ("G", Some(code)) if self.state_code(code, &range) => {}
+            ("M", Some(_)) => self.m_function(value, range),
             ("F", _) => {
                 if value.compare(Decimal::ZERO).is_le() {
                     self.assembler.error("feed-range", "the feed must be greater than zero", range);
@@ -386,8 +447,14 @@ impl Reader<'_> {
             ("XH" | "YH" | "ZH", _) => self.second_point(name, &[value], range, block),
             ("PL", _) => block.pl = Some(value),
             ("PW", _) => block.pw = Some(value),
-            ("SD", Some(degree @ 2..=3)) => self.degree = degree as usize,
+            ("SD", Some(degree @ 2..=3)) => {
+                self.degree = degree as usize;
+                block.kinds |= DEGREE;
+            }
             ("SD", _) => self.assembler.error("degree-range", "SD is 2 or 3", range),
+            ("A" | "B" | "C" | "U" | "V" | "W" | "X" | "Y" | "Z", _) => {
+                self.assembler.axis_unknown(name, range);
+            }
             _ => self.assembler.error("word-unknown", format!("`{name}{value}` is not understood"), range),
         }
     }
@@ -513,36 +580,12 @@ impl Reader<'_> {
             }
             Motion::None | Motion::Rapid | Motion::Line | Motion::Arc(_) | Motion::ArcBy => None,
         };
-        let Some(curve) = curve else { return };
-        self.path_reference(&curve, span);
-        self.assembler.curve(curve, &end, span);
-    }
-
-    /// A curve that moves a rotary axis needs UPATH, where the machine has it, so that all axes follow one parameter;
-    /// a spline also needs a SPLINEPATH with every axis that it moves. Where the machine has no UPATH, rotary axes
-    /// follow the arc length, which is the same only while the linear axes are linear in the parameter.
-    fn path_reference(&mut self, curve: &Written, span: Span) {
-        let axes = self.assembler.machine.axes;
-        let moved = moving(curve);
-        let (rotary, linear): (Vec<usize>, Vec<usize>) =
-            moved.iter().partition(|i| axes.kind(**i) == Kind::Rotary);
-        if rotary.is_empty() {
-            return;
+        if let Some(curve) = curve {
+            self.path_reference(&curve, span);
+            self.assembler.curve(curve, &end, span);
         }
-        let spline = matches!(curve, Written::Nurbs(_) | Written::Through(..));
-        if spline && !moved.iter().all(|i| self.splinepath.contains(i)) {
-            let diagnostic =
-                Diagnostic::error("splinepath-missing", "SPLINEPATH does not name every axis of this spline");
-            self.assembler
-                .diagnostics
-                .push(diagnostic.at(span, "").hint("without it the spline has the first three axes only"));
-        }
-        let shared = self.assembler.machine.spline.shared_parameter;
-        let by_arc_length =
-            if shared { !self.upath } else { !linear_in_parameter(&self.assembler.empty(), curve, &linear) };
-        if by_arc_length {
-            let message = "without UPATH the rotary axes follow the arc length here, which is another curve";
-            self.assembler.diagnostics.push(Diagnostic::error("arc-length", message).at(span, ""));
+        for (text, span) in std::mem::take(&mut self.remarks) {
+            self.assembler.step(Step::Comment(text), span);
         }
     }
 }

@@ -147,7 +147,7 @@ fn call(input: &str) -> IResult<&str, Word<'_>> {
     (name, arguments).map(|(name, arguments)| Word::Call(name, arguments)).parse(input)
 }
 
-/// `keyword = motion | path_reference | end_condition | orientation | "COMPOF" | "SOFT" | "TRAFOOF"`, or another name
+/// `keyword = motion | path_reference | end_condition | orientation | "COMPOF" | "SOFT" | "TRAFOOF" | "TRANS"`, or another name
 fn keyword(input: &str) -> IResult<&str, Word<'_>> {
     name.map(Word::Keyword).parse(input)
 }

@@ -441,6 +441,7 @@ impl Reader {
         base: Option<&Frame>,
         dialect: &Dialect,
     ) -> Option<Frame> {
+        self.counts_from_zero(file.shift.as_deref().unwrap_or_default(), dialect);
         let lines = |this: &mut Self, own, of: fn(&Frame) -> &Vec<Template>, key, variables: &[&str]| {
             this.lines(own, base.map(of), key, variables, dialect)
         };
@@ -512,7 +513,7 @@ impl Reader {
 }
 
 /// The words of a line without its comments: `G17G21 (XY, MM)` is G17 and G21.
-fn words(line: &str) -> Vec<String> {
+pub(super) fn words(line: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let (mut brackets, mut before) = (0usize, ' ');
     for c in line.chars().take_while(|c| *c != ';') {

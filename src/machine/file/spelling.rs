@@ -1,6 +1,7 @@
 //! How a machine file says that text is spelled.
 
 use super::Reader;
+use crate::dialect::Dialect;
 use crate::machine::keys::TextFile;
 use crate::machine::{LineEnd, Text};
 use toml::Spanned;
@@ -9,7 +10,7 @@ use toml::Spanned;
 const GREATEST_NUMBER: u32 = 99_999_999;
 
 impl Reader {
-    pub(super) fn text(&mut self, file: TextFile, base: Option<&Text>) -> Option<Text> {
+    pub(super) fn text(&mut self, file: TextFile, base: Option<&Text>, dialect: &Dialect) -> Option<Text> {
         let line_end = match &file.line_end {
             None => self.or(None, base.map(|b| b.line_end), "text.line_end")?,
             Some(word) => match word.get_ref().as_str() {
@@ -46,8 +47,13 @@ impl Reader {
         }
         let length = file.comment_length.map(Spanned::into_inner);
         let signs = file.comment_signs.map(Spanned::into_inner);
+        let point_always = self.or(file.point_always, base.map(|b| b.point_always), "text.point_always")?;
+        let own = file.without_point.map(|one| self.without_point(&one, dialect));
+        let without_point = own.unwrap_or(base.and_then(|b| b.without_point));
+        self.says_points(dialect, point_always, without_point);
         Some(Text {
-            point_always: self.or(file.point_always, base.map(|b| b.point_always), "text.point_always")?,
+            point_always,
+            without_point,
             sign_always: self.or(file.sign_always, base.map(|b| b.sign_always), "text.sign_always")?,
             leading_zero: self.or(file.leading_zero, base.map(|b| b.leading_zero), "text.leading_zero")?,
             spaces: self.or(file.spaces, base.map(|b| b.spaces), "text.spaces")?,

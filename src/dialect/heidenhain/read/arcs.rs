@@ -31,6 +31,9 @@ impl Reader<'_, '_> {
         if block.rapid || block.named().iter().any(|(axis, _)| 1 < *axis) || block.count == 0 {
             return self.assembler.error("arc-end", "C ends in X and Y and does not move at rapid", head);
         }
+        if !arc::is_placed(&mut self.assembler, &[0, 1], &[], 2, span) {
+            return;
+        }
         if block.feed.is_some() {
             self.assembler.feed = block.feed;
         }
@@ -58,6 +61,11 @@ impl Reader<'_, '_> {
         if block.spline {
             let message = format!("SPL says where it ends, not by how much it goes on, as in `{text}`");
             return self.assembler.error("spline-step", message, range);
+        }
+        if !self.stated[axis] {
+            let message =
+                format!("`{text}` goes on from a place that was stated before a tool, a shift or a plane");
+            return self.assembler.error("step-unknown", message, range);
         }
         let value = self.assembler.coefficient(axis, value);
         let to = value
@@ -109,6 +117,9 @@ impl Reader<'_, '_> {
             let message = format!("IPA has the sign of DR, and turns by {most} degrees at most");
             return self.assembler.error("helix", message, head);
         };
+        if !arc::is_placed(&mut self.assembler, &[0, 1, 2], &[], 2, span) {
+            return;
+        }
         if block.feed.is_some() {
             self.assembler.feed = block.feed;
         }

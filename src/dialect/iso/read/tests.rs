@@ -155,7 +155,7 @@ fn other_words_are_errors_at_their_place() {
         is(&format!("G17 {code}\n"), "code-refused", code);
     }
     is("G1 X1. F0.\n", "feed-range", "F0.");
-    is("G1 X1. W3.\n", "word-unknown", "W3.");
+    is("G1 X1. W3.\n", "axis-unknown", "W3.");
     is("G123 X1.\n", "word-unknown", "G123");
     is("G1 X1. X2.\n", "axis-twice", "X2.");
     is("G0 G1 X1.\n", "codes-conflict", "G1");

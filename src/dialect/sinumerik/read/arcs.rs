@@ -69,6 +69,9 @@ impl Reader<'_> {
             let message = "CIP states a place on the way in I1=AC(…), J1=AC(…) and K1=AC(…)";
             return self.assembler.error("arc-way", message, whole);
         };
+        if !arc::is_placed(&mut self.assembler, &[0, 1, 2], &[], 2, span) {
+            return;
+        }
         let end = self.assembler.target(block.named());
         let start = self.assembler.start(block.named(), &end, span);
         let mut way = start;

@@ -1,7 +1,9 @@
-//! Words that change what holds, the feed, and axes that go the short way.
+//! Words that change what holds, the feed, axes that go the short way, and words that are not read.
 
-use super::{Block, Motion, Reader, STATE_CODES};
+use super::fixed::TRANS;
+use super::{Block, Motion, Reader};
 use crate::decimal::Decimal;
+use crate::diagnostic::Diagnostic;
 use crate::dialect::sinumerik::write::turn_word;
 use crate::ir::ThroughKind;
 use crate::source::Span;
@@ -48,20 +50,12 @@ impl Reader<'_> {
 
     pub(super) fn keyword(&mut self, keyword: &str, range: Range<usize>, block: &mut Block) {
         match keyword {
-            "CIP" => self.set_motion(Motion::ArcBy),
-            "POLY" => self.set_motion(Motion::Poly),
-            "BSPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Bspline;
-            }
-            "ASPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Through(ThroughKind::Akima);
-            }
-            "CSPLINE" => {
-                block.starts_spline = true;
-                self.motion = Motion::Through(ThroughKind::Cubic);
-            }
+            "CIP" => self.motion_word(Motion::ArcBy, &range, block),
+            "POLY" => self.motion_word(Motion::Poly, &range, block),
+            "BSPLINE" => self.starts(Motion::Bspline, &range, block),
+            "ASPLINE" => self.starts(Motion::Through(ThroughKind::Akima), &range, block),
+            "CSPLINE" => self.starts(Motion::Through(ThroughKind::Cubic), &range, block),
+            "TRANS" => block.kinds |= TRANS,
             "UPATH" | "SPATH" => {
                 self.flush();
                 self.upath = keyword == "UPATH";
@@ -86,9 +80,41 @@ impl Reader<'_> {
                     "TRAFOOF in a block of its own ends leading the tip, with the lines of the machine file";
                 self.assembler.error("tip-control", message, range);
             }
-            _ if STATE_CODES.contains(&keyword) => {}
+            "TRAFOOF" => {}
+            _ if self.runs(keyword, &range, false) => {}
             _ => self.assembler.error("word-unknown", format!("`{keyword}` is not understood"), range),
         }
+    }
+
+    pub(super) fn m_function(&mut self, value: Decimal, range: Range<usize>) {
+        let diagnostic = Diagnostic::error("m-function", format!("M{value} is not read here"));
+        let hint = if matches!(value.units(0), Some(2 | 30)) {
+            "the program ends with the footer of the machine file, line by line and in its order"
+        } else {
+            "M functions are read where they are whole lines of the machine file"
+        };
+        self.assembler.diagnostics.push(diagnostic.at(self.assembler.span(range), "").hint(hint));
+    }
+
+    pub(super) fn unreadable(&mut self, rest: &str, at: usize) {
+        let length = rest.find([' ', '\t', ';']).unwrap_or(rest.len());
+        let text = &rest[..length];
+        let message = if text.starts_with('/') {
+            "whether a block behind / runs is decided at the machine"
+        } else if text.contains("=IC(") {
+            "incremental positions are not read"
+        } else if text.contains("=R") {
+            "parameters are read as feeds and work offsets only"
+        } else {
+            "this word cannot be read"
+        };
+        self.assembler.error("word-unreadable", message, at..at + length);
+    }
+
+    /// A word that begins a spline, each time.
+    fn starts(&mut self, motion: Motion, range: &Range<usize>, block: &mut Block) {
+        block.starts_spline = true;
+        self.motion_word(motion, range, block);
     }
 
     /// The IR has no place for end conditions: they are the machine file's.
