@@ -3,6 +3,8 @@
 //! Blocks have no numbers here, so that what refuses is the meaning; numbers have a test of their own. The digit that
 //! is changed is the first that counts: the last decimal of a coordinate may change within the tolerance.
 
+mod golden;
+
 use crate::support::{compiled, input, machine, sources};
 use splinepost::diagnostic::{Diagnostics, Severity};
 use splinepost::dialect::DIALECTS;
