@@ -3,8 +3,6 @@
 //! The position is unknown until an axis was named. A cut that starts where some axis is unknown (a fragment without
 //! its approach) starts, for that axis, where it ends, and a warning says so.
 
-mod frames;
-
 use super::stated::Stated;
 use crate::decimal::{Decimal, power_of_ten};
 use crate::diagnostic::{Diagnostic, Diagnostics, Warned};
@@ -58,18 +56,19 @@ pub struct Assembler<'m> {
     /// What it states beside its moves.
     pub stated: Stated,
     /// Where the text counts each axis from, in units of its last decimal.
-    shift: Units,
+    pub(super) shift: Units,
     reversed: [bool; MAX_AXES],
     modulo: [bool; MAX_AXES],
     /// The single-letter axes by letter, so that a million words are not compared with names.
     letters: [Option<u8>; 26],
-    steps: Vec<Located<Decimal, Written>>,
-    run: Option<(WrittenPoints, Span)>,
+    pub(super) steps: Vec<Located<Decimal, Written>>,
+    pub(super) run: Option<(WrittenPoints, Span)>,
     run_feed: Option<Decimal>,
     led: bool,
     /// The tool that was called last, and whether a line named the register of its length.
     tool: Option<(ToolCall, bool)>,
-    tilted: bool,
+    /// Whether a tilted plane is in force.
+    pub(super) tilted: bool,
     /// Which axes the cuts so far name.
     named: [bool; MAX_AXES],
     /// The first cut from a position that was not known in these axes.

@@ -8,6 +8,7 @@
 //! | [`arc`] | G2 and G3 with I J K |
 //! | [`assemble`] | moves read one by one become a program |
 //! | [`block`] | lines, numbers and words that all dialects share |
+//! | `counting` | from where places count: shifts, planes, work offsets |
 //! | [`frame`] | the fixed lines round a program, read back |
 //! | [`modal`] | what a writer remembers between blocks |
 //! | [`parts`] | a program with the machine's lines round it, subprograms too |
@@ -20,6 +21,7 @@ mod alike;
 pub mod arc;
 pub mod assemble;
 pub mod block;
+mod counting;
 pub mod frame;
 pub mod heidenhain;
 pub mod iso;

@@ -1,9 +1,9 @@
 //! From where places count: shifts, tilted planes, transformations and work offsets, and which of them go together.
 
-use super::Assembler;
+use super::assemble::Assembler;
+use super::stated::WorkOffset;
 use crate::decimal::Decimal;
 use crate::diagnostic::Diagnostic;
-use crate::dialect::stated::WorkOffset;
 use crate::ir::{Shift, Step};
 use crate::source::Span;
 use crate::units::MAX_AXES;
