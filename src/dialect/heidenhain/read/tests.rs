@@ -208,8 +208,8 @@ fn feed_is_modal_and_rapid_is_not() {
         Step::Cut(Cut { feed: Some(feed), curve: Written::Lines(points), .. }) => {
             format!("{feed} {}", points.count())
         }
-        other @ (Step::Comment(_)
-        | Step::Tool(_)
+        Step::Comment(text) => format!("; {text}"),
+        other @ (Step::Tool(_)
         | Step::Spindle(_)
         | Step::Coolant
         | Step::Home(_)
@@ -221,7 +221,7 @@ fn feed_is_modal_and_rapid_is_not() {
     };
     let steps: Vec<String> =
         read.value.decimals.program.steps.iter().map(|located| said(&located.step)).collect();
-    assert_eq!(steps, ["rapid", "100 1", "rapid", "100 1", "200.5 2"]);
+    assert_eq!(steps, ["rapid", "100 1", "rapid", "100 1", "; F9", "200.5 2"]);
 }
 
 #[test]

@@ -117,7 +117,9 @@ fn without_pl_the_knots_are_guessed_with_a_warning() {
 #[test]
 fn what_is_wrong_has_a_name() {
     assert_eq!(id("G1 X0 Y0 F100\nG91 X1\n"), "word-unknown");
-    assert_eq!(id("G1 X0 Y0 F100\nG55\n"), "word-unknown");
+    assert_eq!(id("G1 X0 Y0 F100\nG55\n"), "code-refused");
+    assert_eq!(id("G1 X0 Y0 F100\nG505\n"), "word-unknown");
+    assert_eq!(id("G1 X0 Y0 F100\nM30 M30\n"), "m-function");
     assert_eq!(id("G1 X0 Y0 X1 F100\n"), "axis-twice");
     assert_eq!(id("G1 X0 Y0 PO[X]=(1,2)\n"), "axis-twice");
     assert_eq!(id("G1 X0 Y0 F100\nPO[X]=(1,2)\n"), "po-without-poly");
