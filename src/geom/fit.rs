@@ -30,6 +30,9 @@ pub const MAX_PIECES: usize = 1_000_000;
 /// A fit that has no bound at all by this many pieces is given up.
 const MAX_BLIND: usize = 1024;
 
+/// A guess is at most so many times the one before.
+const MAX_GROWTH: f64 = 16.0;
+
 /// The tolerance cannot be reached: rounding or [`MAX_PIECES`] stand before it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the tolerance of {tolerance} mm cannot be reached")]
@@ -89,7 +92,7 @@ fn fewest(
 }
 
 /// The fewest pieces on the breaks of [`LogCurve::breaks`] whose bounds all hold. The error falls with n^−order, so
-/// the next n is guessed from the last error, and the least that holds is found by stepping down.
+/// the next n is guessed from the last error, and the least that holds, one less than which does not, is looked for below it.
 fn fewest_pieces<P>(
     curve: &LogCurve,
     tolerance: f64,
@@ -112,7 +115,8 @@ fn fewest_pieces<P>(
         }
         (worst, pieces)
     };
-    let mut n = 1;
+    // So many pieces hold, and so many do not.
+    let (mut n, mut short) = (1, 0);
     let (mut worst, mut pieces) = fit(n);
     let mut stalled = 0;
     while !(worst <= tolerance) {
@@ -122,7 +126,10 @@ fn fewest_pieces<P>(
             4 => ratio.sqrt().sqrt(),
             _ => cbrt(ratio.sqrt()),
         };
-        n = if growth.is_finite() { (0.95 * n as f64 * growth) as usize } else { 2 * n }.max(n + 1);
+        short = n;
+        // Of a few pieces the error tells little of that of many.
+        let growth = if growth.is_finite() { growth.min(MAX_GROWTH) } else { 2.0 };
+        n = ((0.95 * n as f64 * growth) as usize).max(n + 1);
         if MAX_PIECES < n || (worst == f64::INFINITY && MAX_BLIND < n) {
             return Err(FitError { tolerance });
         }
@@ -134,13 +141,16 @@ fn fewest_pieces<P>(
             return Err(FitError { tolerance });
         }
     }
-    while 1 < n {
-        let (worst, fewer) = fit(n - 1);
-        if tolerance < worst || fewer.len() < n - 1 {
-            break;
+    // One less is tried first, since most guesses are right; then by halves between what holds and what does not.
+    let mut tried = n - 1;
+    while short < tried {
+        let (worst, fewer) = fit(tried);
+        if worst <= tolerance {
+            (n, pieces) = (tried, fewer);
+        } else {
+            short = tried;
         }
-        n -= 1;
-        pieces = fewer;
+        tried = short.midpoint(n);
     }
     Ok(pieces)
 }
@@ -305,6 +315,23 @@ mod tests {
             assert_eq!(linear_in_x(&curve, 3, 1e-6).unwrap().len(), 1);
             assert_eq!(chords(&curve, 1e-6).unwrap(), vec![0.0, 30.0]);
         }
+    }
+
+    /// Run out to 0.017 mm before its apex the curve turns ever faster, and the error of a few chords tells little of that of
+    /// many: the guesses go far past the least.
+    #[test]
+    fn the_least_is_found_in_few_trials() {
+        let cutter = Cutter { d1: 0.4, s: 20.7, c: 4.46, r: 8.0, length: 50.0, ..paper() };
+        let curve = LogCurve::new(cutter, 0.0).unwrap().with_range(-2.346, 50.0).unwrap();
+        let tried = std::cell::Cell::new(0);
+        let pieces = fewest_pieces(&curve, 6.7e-4, 2.0, |x0, x1| {
+            tried.set(tried.get() + 1);
+            Some((log_chord(&curve, (x0, curve.angle(x0)), (x1, curve.angle(x1))), ()))
+        });
+        let (count, tried) = (pieces.unwrap().len(), tried.get());
+        // With c pieces the last guess is below 16 c and those before together a fifteenth of it; one less is as many, and the
+        // halves are 16 c in all down to c, and c for each of log2(16 c) = 13 more.
+        assert!(tried < (16 + 2 + 16 + 16 + 13) * count, "{count} pieces took {tried}");
     }
 
     #[test]
