@@ -6,6 +6,7 @@ use splinepost::machine::Machine;
 use splinepost::source::SourceId;
 use splinepost::summary::Summary;
 use splinepost::{Options, Output, compile, front};
+use std::fmt::Write as _;
 
 /// Half a circle of radius 5.
 const HALF_CIRCLE: f64 = 5.0 * std::f64::consts::PI;
@@ -211,4 +212,63 @@ fn a_spline_of_one_span_may_repeat_its_first_point() {
     let (points, knots) = curves(again);
     assert_eq!(points.len(), 4, "one span");
     assert_eq!(curves(reading), (points, knots));
+}
+
+#[test]
+fn chords_that_go_round_a_fold_follow_it() {
+    // Lines of 1e-4 mm and more round a fold whose legs are as near to one another as the tolerance.
+    let heidenhain = own_machine("slow-job-linear");
+    let tolerance = 0.000_352_411_314_744_253_96;
+    let options = Options {
+        motion: heidenhain.dialect.motion("linear"),
+        tolerance: Some(tolerance),
+        ..Options::default()
+    };
+    let output =
+        compiled("slow-job-linear.toml", &heidenhain, &options).unwrap_or_else(|told| panic!("{told}"));
+    let deviation = output.report.expect("a proof").deviation.mm;
+    // The chords take what rounding leaves of the tolerance: at least half of it.
+    assert!((0.5 * tolerance..=tolerance).contains(&deviation), "{deviation}");
+}
+
+#[test]
+fn a_cutter_run_out_to_its_apex_is_written() {
+    // A radius of 0.017 mm: so near to the apex a chord is off by thousands of times what many are.
+    let sinumerik = own_machine("slow-cutter-apex");
+    let tolerance = 0.000_673_115_714_725_779_7;
+    let options = Options { method: Some(Method::Direct), tolerance: Some(tolerance), ..Options::default() };
+    let output =
+        compiled("slow-cutter-apex.toml", &sinumerik, &options).unwrap_or_else(|told| panic!("{told}"));
+    assert!(output.report.expect("a proof").deviation.mm <= tolerance);
+}
+
+/// Directions a hair from the pole, where C turns by any angle and the tool by next to none.
+#[test]
+fn a_control_that_turns_evenly_passes_the_pole() {
+    let mut state = 0x9e37_79b9_u32;
+    let mut random = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state >> 8) / f64::from(1u32 << 24)
+    };
+    let mut text = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/500,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\n\
+                    GOTO/0,0,50,0,0,1\nGOTO/0,0,0,0,0,1\n"
+        .to_owned();
+    for k in 1..=60 {
+        // From 1e-7, which rounding hides, to 0.03.
+        let tilt = 10.0f64.powf(-7.0 + 5.5 * random());
+        let (sin, cos) = (std::f64::consts::TAU * random()).sin_cos();
+        let (i, j) = (tilt * cos, tilt * sin);
+        let up = (1.0 - i * i - j * j).sqrt();
+        writeln!(text, "GOTO/{k},0,0,{i:.7},{j:.7},{up:.7}").expect("a string");
+    }
+    text += "RAPID\nGOTO/60,0,50,0,0,1\nFINI\n";
+    let homes = "[axis.X]\nhome = 0\n[axis.Y]\nhome = 0\n[axis.Z]\nhome = 0\n";
+    for built_in in ["heidenhain", "mazak"] {
+        let machine = machine(&format!("extends = \"{built_in}\"\n{homes}[orientation]\nturn = \"tilt\"\n"));
+        let options = Options { motion: machine.dialect.motion("linear"), ..Options::default() };
+        let output =
+            super::compiled(&text, &machine, &options).unwrap_or_else(|e| panic!("{built_in}: {e:?}"));
+        let deviation = output.report.expect("a proof").deviation;
+        assert!(deviation.mm <= output.tolerance, "{built_in}: {deviation:?}");
+    }
 }
