@@ -4,7 +4,9 @@
 //! The machines are the default one of each dialect and every `<name>.machine.toml` in the folder; the outputs are
 //! called after them. A missing or a stray file fails.
 
-use crate::support::{compare, compiled, compiled_from, fail_on, folder, machine, sources_in};
+use crate::support::{
+    compare, compiled, compiled_from, fail_on, folder, machine, no_number, sources_in, told,
+};
 use splinepost::machine::Machine;
 use std::collections::BTreeSet;
 use std::fs;
@@ -38,7 +40,12 @@ fn every_case_has_its_programs() {
         for (name, machine) in &machines {
             let file = format!("{name}.{}", machine.text.extension.to_lowercase());
             match compiled_from(&sources, machine, None) {
-                Ok(output) => compare(&case.join(&file), &output.text, &mut wrong),
+                Ok(output) => {
+                    compare(&case.join(&file), &output.text, &mut wrong);
+                    for text in [&output.text, &told(&output)] {
+                        assert_eq!(no_number(text), None, "{file}: {text}");
+                    }
+                }
                 Err(error) => wrong.push(format!("{}/{file}: {error:?}", case.display())),
             }
             known.insert(file);

@@ -4,6 +4,7 @@ use splinepost::diagnostic::Diagnostics;
 use splinepost::dialect::Motion;
 use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};
+use splinepost::summary::Summary;
 use splinepost::{Options, Output, compile, front};
 use std::path::{Path, PathBuf};
 
@@ -112,6 +113,26 @@ pub(crate) fn compiled_from(
     let options = Options { motion, ..Options::default() };
     let language = front::detect(sources.get(SourceId::INPUT).expect("an input"))?;
     compile(sources, language, machine, &options).map_err(|failure| failure.diagnostics)
+}
+
+/// The text and the JSON of a compilation's figures.
+pub(crate) fn told(output: &Output) -> String {
+    let summary = Summary::new(
+        &output.intent,
+        &output.machine,
+        Some(output.motion.name),
+        &output.text,
+        output.report.as_ref(),
+        output.tolerance,
+        output.setup.clone(),
+    );
+    summary.render() + &summary.to_json()
+}
+
+/// Numbers that are none, as words.
+pub(crate) fn no_number(text: &str) -> Option<&str> {
+    let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
+    words.find(|word| ["inf", "nan", "infinity"].iter().any(|none| word.eq_ignore_ascii_case(none)))
 }
 
 /// Compares with a file, or writes it where that is asked for.

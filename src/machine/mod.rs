@@ -214,6 +214,21 @@ fn says(lines: &[template::Template], variable: &str) -> bool {
 mod tests {
     use super::*;
 
+    /// What a hint says to write is a file that can be.
+    #[test]
+    fn hints_extend_what_can_be_extended() {
+        for (name, text) in BUILT_IN {
+            let built_in = Machine::built_in(name).unwrap();
+            let said = built_in.to_state("[axes] linear = [\"X\"]");
+            let file =
+                said.strip_prefix("in a machine file: ").unwrap().replace(", ", "\n").replace("] ", "]\n");
+            assert!(Machine::parse(&file, SourceId::INPUT).is_ok(), "{file}: {text}");
+            let own =
+                Machine::parse(&format!("extends = \"{name}\"\nname = \"mine\"\n"), SourceId::INPUT).unwrap();
+            assert_eq!(own.to_state("keys"), "in the file of machine `mine`: keys");
+        }
+    }
+
     #[test]
     fn every_built_in_reads() {
         for (name, text) in BUILT_IN {

@@ -1,7 +1,7 @@
 //! `fixtures/apt/<case>/`: CL data written by the project, and beside it the program of every dialect's default machine.
 
 use super::{cases, input};
-use crate::support::{compare, fail_on};
+use crate::support::{compare, fail_on, no_number, told};
 use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::verify::Status;
@@ -33,6 +33,9 @@ fn every_case_has_its_programs() {
                 }
             };
             compare(&case.join(&file), &output.text, &mut wrong);
+            for text in [&output.text, &told(&output)] {
+                assert_eq!(no_number(text), None, "{file}: {text}");
+            }
             let report = output.report.expect("a proof");
             assert_eq!(report.status, Status::Proved, "{file}");
             assert!(report.deviation.mm <= output.tolerance, "{file}: {:?}", report.deviation);

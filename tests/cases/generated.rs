@@ -2,7 +2,7 @@
 //!
 //! A long run: `SPLINEPOST_INPUTS=20000 SPLINEPOST_SEED=7 cargo test --test tests -- cases::generated`.
 
-use super::proof::no_number;
+use crate::support::no_number;
 use crate::support::{machine, sources};
 use splinepost::source::SourceId;
 use splinepost::summary::Summary;

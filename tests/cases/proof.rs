@@ -1,10 +1,10 @@
 //! Stated bounds, lengths and times, and programs that compile refused to itself: `fixtures/cases/proof`.
 
-use crate::support::{folder, machine, sources_in};
+use crate::support::{folder, machine, no_number, sources_in, told};
+use splinepost::geom::elementary::{cos, exp, sin};
 use splinepost::ir::Method;
 use splinepost::machine::Machine;
 use splinepost::source::SourceId;
-use splinepost::summary::Summary;
 use splinepost::{Options, Output, compile, front};
 use std::fmt::Write as _;
 
@@ -22,26 +22,6 @@ fn compiled(name: &str, machine: &Machine, options: &Options) -> Result<Output, 
     let source = sources.get(SourceId::INPUT).expect("an input");
     let language = front::detect(source).unwrap_or_else(|_| panic!("{name}: no language"));
     compile(&sources, language, machine, options).map_err(|f| f.diagnostics.render(&sources, false))
-}
-
-/// The text and the JSON of a compilation's figures.
-fn told(output: &Output) -> String {
-    let summary = Summary::new(
-        &output.intent,
-        &output.machine,
-        Some(output.motion.name),
-        &output.text,
-        output.report.as_ref(),
-        output.tolerance,
-        output.setup.clone(),
-    );
-    summary.render() + &summary.to_json()
-}
-
-/// Numbers that are none, as words.
-pub(super) fn no_number(text: &str) -> Option<&str> {
-    let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
-    words.find(|word| ["inf", "nan", "infinity"].iter().any(|none| word.eq_ignore_ascii_case(none)))
 }
 
 /// Compiles a case on every built-in machine, each as `auto` chooses: within its tolerance, of this length, without `inf`.
@@ -255,9 +235,9 @@ fn a_control_that_turns_evenly_passes_the_pole() {
         .to_owned();
     for k in 1..=60 {
         // From 1e-7, which rounding hides, to 0.03.
-        let tilt = 10.0f64.powf(-7.0 + 5.5 * random());
-        let (sin, cos) = (std::f64::consts::TAU * random()).sin_cos();
-        let (i, j) = (tilt * cos, tilt * sin);
+        let tilt = 1.0e-7 * exp(12.6 * random());
+        let turn = std::f64::consts::TAU * random();
+        let (i, j) = (tilt * cos(turn), tilt * sin(turn));
         let up = (1.0 - i * i - j * j).sqrt();
         writeln!(text, "GOTO/{k},0,0,{i:.7},{j:.7},{up:.7}").expect("a string");
     }
