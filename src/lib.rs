@@ -35,6 +35,9 @@
 //! | [`simulate`] | the path as a control would run it |
 //! | [`plot`] | pictures |
 //! | [`setup`], [`summary`] | what a person at the machine must know, and what a compilation tells |
+//!
+//! The command is the feature `cli`, on by default. `default-features = false` leaves the library alone, without the crates
+//! that only the command needs.
 
 pub mod decimal;
 pub mod diagnostic;
