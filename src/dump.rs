@@ -189,6 +189,7 @@ fn step<N: Display, C>(text: &mut String, axes: &Axes, step: &Step<N, C>, curve:
             Auxiliary::Dwell(seconds) => writeln!(text, "dwell {seconds}"),
             Auxiliary::TipControl => writeln!(text, "tip control"),
             Auxiliary::TipControlEnd => writeln!(text, "tip control ends"),
+            Auxiliary::LengthEnd => writeln!(text, "tool length ends"),
             Auxiliary::Plane([first, second, third]) => writeln!(text, "plane {first} {second} {third}"),
             Auxiliary::PlaneEnd => writeln!(text, "plane ends"),
         },

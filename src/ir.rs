@@ -153,6 +153,8 @@ pub enum Auxiliary<N> {
     TipControl,
     /// That ends.
     TipControlEnd,
+    /// The length of the tool does not count from here on.
+    LengthEnd,
     /// From here on positions count in a plane that is tilted by three angles, degrees, in the order of the machine file,
     /// and the tool stands square to it. Where the axes are in it nobody knows.
     Plane([N; 3]),
@@ -171,6 +173,7 @@ impl<N> Auxiliary<N> {
             Auxiliary::Dwell(_) => "dwell",
             Auxiliary::TipControl => "tip_control",
             Auxiliary::TipControlEnd => "tip_control_end",
+            Auxiliary::LengthEnd => "length_end",
             Auxiliary::Plane(_) => "plane",
             Auxiliary::PlaneEnd => "plane_end",
         }
@@ -190,6 +193,7 @@ impl<N> Auxiliary<N> {
             Auxiliary::Dwell(time) => Auxiliary::Dwell(seconds(time)?),
             Auxiliary::TipControl => Auxiliary::TipControl,
             Auxiliary::TipControlEnd => Auxiliary::TipControlEnd,
+            Auxiliary::LengthEnd => Auxiliary::LengthEnd,
             Auxiliary::Plane([first, second, third]) => {
                 Auxiliary::Plane([angle(first)?, angle(second)?, angle(third)?])
             }

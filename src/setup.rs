@@ -32,6 +32,8 @@ pub struct Setup {
     pub clear: Option<(String, f64)>,
     /// Axes that retract in machine coordinates.
     pub home: Vec<String>,
+    /// What ends the length of the last tool; none where no word of its own does.
+    pub length_end: Option<LengthEnd>,
     /// How many paths there are: flutes times passes.
     pub paths: usize,
     /// How long a path takes at the feed that was asked for, minutes: from the shortest to the longest.
@@ -44,6 +46,16 @@ pub struct Setup {
     pub needs: Vec<String>,
     /// What the proof does not cover.
     pub not_covered: Vec<String>,
+}
+
+/// What becomes of the length of the last tool on a control where ending it may move an axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthEnd {
+    /// It ends at the park place: the axes and their homes.
+    Parked(Vec<(String, f64)>),
+    /// It stays in force, for want of such a place.
+    Left,
 }
 
 /// How far and how fast an axis goes.
@@ -83,8 +95,9 @@ impl Setup {
             }
         });
         let steps = || intent.program.steps.iter().map(|located| &located.step);
+        let retracts = |axis: usize| intent_retracts(intent, axis);
         let home = steps().filter_map(|step| match step {
-            Step::Home(axis) => Some(axes.name(*axis).to_string()),
+            Step::Home(axis) => retracts(*axis).then(|| axes.name(*axis).to_string()),
             Step::Comment(_)
             | Step::Tool(_)
             | Step::Spindle(_)
@@ -111,6 +124,7 @@ impl Setup {
             turn: (machine.orientation.turn == Turn::Tilt).then(|| departure(decimals)).flatten(),
             clear: clear(intent),
             home,
+            length_end: length_end(intent, machine),
             paths: minutes.len(),
             path_minutes: range,
             free_axes: free_axes(decimals, machine),
@@ -166,6 +180,17 @@ impl Setup {
             };
             lines.push(format!("CLEAR: {axis} {}{home}", short(*to, 3)));
         }
+        match &self.length_end {
+            None => {}
+            Some(LengthEnd::Parked(axes)) => {
+                let places: Vec<String> =
+                    axes.iter().map(|(axis, to)| format!("{axis} {}", short(*to, 3))).collect();
+                lines.push(format!("PARK PLACE AT THE END, OF THE MACHINE: {}", places.join(", ")));
+            }
+            Some(LengthEnd::Left) => {
+                lines.push("THE LENGTH OF THE LAST TOOL STAYS IN FORCE: NO PARK PLACE".to_owned());
+            }
+        }
         if let Some([least, most]) = self.path_minutes {
             let (least, most) = (short(least, 3), short(most, 3));
             let minutes = if least == most { least } else { format!("{least} TO {most}") };
@@ -205,6 +230,40 @@ impl Setup {
         lines.push(format!("{LAST_REMARK} {}", self.not_covered.join(", ").to_uppercase()));
         lines
     }
+}
+
+/// Whether an axis retracts where a tool is changed or the program ends, and does not only park then.
+fn intent_retracts(intent: &Intent, axis: usize) -> bool {
+    let steps = &intent.program.steps;
+    let homes = |from: usize| {
+        steps[from..].iter().take_while(|located| matches!(located.step, Step::Home(_))).count()
+    };
+    steps.iter().enumerate().any(|(i, located)| {
+        let parks =
+            || steps.get(i + homes(i)).is_some_and(|next| next.step == Step::Auxiliary(Auxiliary::LengthEnd));
+        // The first of them retracts, and the others park.
+        let first = i == 0 || !matches!(steps[i - 1].step, Step::Home(_));
+        located.step == Step::Home(axis) && (first || !parks())
+    })
+}
+
+/// What becomes of the length of the last tool.
+fn length_end(intent: &Intent, machine: &Machine) -> Option<LengthEnd> {
+    let calls = intent.program.steps.iter().any(|located| matches!(located.step, Step::Tool(_)))
+        && machine.calls_length();
+    let led = intent.program.axes.direction().is_some();
+    if !machine.frame.length_end_moves || !(calls || led) {
+        return None;
+    }
+    let ends = Step::Auxiliary(if led { Auxiliary::TipControlEnd } else { Auxiliary::LengthEnd });
+    let park = machine.park().filter(|_| intent.program.steps.iter().any(|located| located.step == ends));
+    let place = |axis: usize| {
+        Some((machine.axes.name(axis).to_string(), machine.limits(machine.axes.name(axis)).home?))
+    };
+    Some(match park {
+        Some([_, x, y]) => LengthEnd::Parked([x, y].into_iter().filter_map(place).collect()),
+        None => LengthEnd::Left,
+    })
 }
 
 /// What is to be seen to where F is the speed of the linear axes alone, and others go along: where those hardly move only the

@@ -1,7 +1,6 @@
 //! `splinepost plot`: every figure is there, XML is sound, bytes are the same.
 
 use crate::support::{folder, sources_with};
-use splinepost::machine::Machine;
 use splinepost::plot::deviation::deviation;
 use splinepost::plot::paths::figures;
 use splinepost::simulate::partition::Parametric;
@@ -102,7 +101,7 @@ fn the_deviation_drawn_is_within_what_is_proved() {
     let sources = Sources::new(Source::new("input.toml", text));
     let language = front::find("cutter").expect("the cutter language");
     for name in ["sinumerik", "heidenhain"] {
-        let machine = Machine::built_in(name).expect("a machine");
+        let machine = crate::support::five(name);
         let output = compile(&sources, language, &machine, &Options::default())
             .unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics));
         let reading = (machine.dialect.read)(&output.text, SourceId::PROGRAM, &machine)
@@ -127,7 +126,7 @@ fn tilted_planes_are_drawn_in_the_work() {
     let sources = Sources::new(Source::new("input.cls", text));
     let language = front::find("apt").expect("CL data");
     for name in ["sinumerik", "heidenhain", "mazak"] {
-        let machine = Machine::built_in(name).expect("a machine");
+        let machine = crate::support::five(name);
         let output = compile(&sources, language, &machine, &Options::default())
             .unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics));
         let machine = machine.with_axes(&output.intent.program.axes).expect("its axes");

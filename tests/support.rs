@@ -63,6 +63,14 @@ pub(crate) fn machine(text: &str) -> Machine {
     Machine::parse(text, SourceId::INPUT).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
+/// A place in X and Y where a tool is clear of the work, for a machine file: there a Mazak may end the length of a tool.
+pub(crate) const PARK: &str = "[axis.X]\nhome = -500.0\n[axis.Y]\nhome = 0.0\n";
+
+/// A built-in machine for programs of five axes.
+pub(crate) fn five(name: &str) -> Machine {
+    machine(&format!("extends = \"{name}\"\nname = \"{name}\"\n{}", if name == "mazak" { PARK } else { "" }))
+}
+
 /// The text as the only source.
 pub(crate) fn sources(text: &str) -> Sources {
     Sources::new(Source::new("input.toml", text))

@@ -330,6 +330,23 @@ impl<'m> Assembler<'m> {
         true
     }
 
+    /// Whether Z, X and Y are at their homes in machine coordinates.
+    pub fn is_parked(&self) -> bool {
+        let Some(axes) = self.machine.park().filter(|_| self.run.is_none()) else { return false };
+        let moves = |located: &&Located<Decimal, Written>| match located.step {
+            Step::Rapid(_) | Step::Cut(_) => false,
+            Step::Comment(_)
+            | Step::Tool(_)
+            | Step::Spindle(_)
+            | Step::Coolant
+            | Step::Home(_)
+            | Step::Shift(_)
+            | Step::Auxiliary(_) => true,
+        };
+        let since = || self.steps.iter().rev().take_while(moves);
+        axes.iter().all(|axis| since().any(|located| located.step == Step::Home(*axis)))
+    }
+
     /// Whether the last step is that the tip is led from here on.
     pub fn begins_tip_control(&self) -> bool {
         self.run.is_none()
@@ -379,6 +396,9 @@ impl<'m> Assembler<'m> {
             Step::Auxiliary(Auxiliary::TipControlEnd) => {
                 self.led = false;
                 self.changes_frames(span);
+                if self.machine.frame.tip_end_parks {
+                    self.position = [None; MAX_AXES];
+                }
             }
             Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd) => {
                 self.position = [None; MAX_AXES];

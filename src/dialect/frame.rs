@@ -1,6 +1,7 @@
 //! The fixed lines round a program: a reader meets them line by line, against the machine file.
 
 use super::assemble::Assembler;
+use super::outline::{Outline, begins_alike};
 use super::parts::home_word;
 use crate::decimal::{Decimal, read_decimal};
 use crate::diagnostic::Diagnostic;
@@ -80,8 +81,7 @@ impl<'m> Frame<'m> {
         let all = firsts.chain(frame.end.first().copied()).chain([&frame.assign]);
         let outlines: Vec<Outline> = all.map(Outline::new).collect();
         let beginning = |byte: u8| {
-            let fitting =
-                outlines.iter().filter(|outline| outline.start.bytes().next().is_none_or(|b| b == byte));
+            let fitting = outlines.iter().filter(|outline| outline.may_begin_with(byte));
             fitting.cloned().collect()
         };
         frame.outlines = (0..=u8::MAX).map(beginning).collect();
@@ -127,7 +127,7 @@ impl<'m> Frame<'m> {
     }
 
     /// The lists of lines that may stand anywhere behind the header.
-    fn lists(&self) -> [&'m [Template]; 17] {
+    fn lists(&self) -> [&'m [Template]; 18] {
         let frame = &self.machine.frame;
         [
             &frame.tool_spindle,
@@ -142,6 +142,7 @@ impl<'m> Frame<'m> {
             &frame.dwell,
             &frame.tip_control,
             &frame.tip_control_end,
+            &frame.length_end,
             &frame.plane,
             &frame.plane_end,
             &frame.start,
@@ -249,12 +250,34 @@ impl<'m> Frame<'m> {
             self.ended = 1;
             return Met::Fixed;
         }
-        for lines in &self.lists()[..16] {
+        if assembler.leads_tip()
+            && let Some(template) = frame.tip_control_end.first()
+            && self.take(template, text, span, true, assembler)
+        {
+            // Its lines may begin as those of a retraction do.
+            assembler.step(Step::Auxiliary(Auxiliary::TipControlEnd), span);
+            self.pending = frame.tip_control_end[1..].iter().collect();
+            self.begun = Some(span);
+            return Met::Fixed;
+        }
+        for lines in &self.lists()[..17] {
+            let is = |list: &Vec<Template>| std::ptr::eq(list.as_slice(), *lines);
+            // What ends tool centre point control may be what ends a length, G49: it was met where the tip is led.
+            if is(&frame.tip_control_end) && frame.tip_control_end.last() == frame.length_end.last() {
+                continue;
+            }
+            let ends_length = is(&frame.length_end) && !lines.is_empty();
             if let Some(template) = lines.first()
                 && begins_alike(template, text)
+                // Elsewhere it may move the tool, and is no line of the machine file.
+                && (!ends_length || !frame.length_end_moves || assembler.is_parked())
                 && self.take(template, text, span, true, assembler)
             {
-                if let Some(switch) = self.switch(text) {
+                if is(&frame.home) && !lines.is_empty() {
+                    if let Some(axis) = frame.home_axis.and_then(|axis| self.machine.axes.index_of(axis)) {
+                        assembler.home(axis, span);
+                    }
+                } else if let Some(switch) = self.switch(text) {
                     assembler.step(Step::Auxiliary(switch), span);
                 }
                 self.pending = lines[1..].iter().collect();
@@ -305,6 +328,7 @@ impl<'m> Frame<'m> {
             Auxiliary::SpindleStop,
             Auxiliary::Stop,
             Auxiliary::OptionalStop,
+            Auxiliary::LengthEnd,
             Auxiliary::TipControl,
             Auxiliary::TipControlEnd,
             Auxiliary::PlaneEnd,
@@ -498,35 +522,6 @@ impl<'m> Frame<'m> {
         assembler.parameters.insert(number, value);
         true
     }
-}
-
-/// What a line of the machine file begins and ends with, whatever is filled in.
-#[derive(Clone)]
-struct Outline {
-    /// The last byte, where it has one: mostly it decides.
-    last: Option<u8>,
-    start: String,
-    end: String,
-}
-
-impl Outline {
-    fn new(template: &Template) -> Outline {
-        let (start, end) = template.outline();
-        Outline { last: end.bytes().next_back(), start: start.to_owned(), end: end.to_owned() }
-    }
-
-    #[inline]
-    fn fits(&self, line: &str) -> bool {
-        (self.last.is_none() || self.last == line.bytes().next_back())
-            && line.starts_with(self.start.as_str())
-            && line.ends_with(self.end.as_str())
-    }
-}
-
-/// Whether a line begins as a template does.
-fn begins_alike(template: &Template, text: &str) -> bool {
-    let first = template.0.as_bytes().first();
-    first == Some(&b'{') || first == text.as_bytes().first()
 }
 
 fn whole_decimal(text: &str) -> Option<Decimal> {

@@ -26,6 +26,7 @@ pub mod frame;
 pub mod heidenhain;
 pub mod iso;
 pub mod modal;
+mod outline;
 pub mod parts;
 pub mod sinumerik;
 pub mod stated;
@@ -66,6 +67,10 @@ pub struct Dialect {
     pub replaces_shift: Option<&'static str>,
     /// Words that make no work offset by themselves: they add to the one before, or depend on where the tool is.
     pub adds_shift: &'static [&'static str],
+    /// What its words would make of the lines of a machine file, where that is wrong.
+    pub lines: fn(&Machine) -> Diagnostics,
+    /// The words that end the length of a tool.
+    pub ends_length: &'static [&'static str],
     /// Whether F can be inverse time.
     pub inverse_time: bool,
     /// How lines go round past 360 degrees on an axis that wraps.

@@ -22,6 +22,8 @@ pub enum Part<'p> {
     Home(usize),
     /// The lines that lead the tip of the tool, or end that, are written.
     TipControl(bool),
+    /// The lines that end the length of the tool are written.
+    LengthEnd,
     /// The lines of a tilted plane, or of its end, are written: nothing is in force.
     Plane,
     /// The lines of a work offset are written.
@@ -52,6 +54,7 @@ type Steps<'p> = &'p [Located<Decimal, Written>];
 /// A program with the machine's lines round it, part by part, and the parameters that its feeds are.
 pub fn parts<'p>(decimals: &'p Decimals, machine: &Machine) -> (Vec<Part<'p>>, Vec<(Decimal, u32)>) {
     let program = &decimals.program;
+    let machine = &machine.filled();
     let frame = &machine.frame;
     let number = format!("{:04}", program.number);
     let linear = machine.linear_names();
@@ -199,6 +202,7 @@ impl<'p> Walk<'p, '_> {
                         | Auxiliary::SpindleStop
                         | Auxiliary::Stop
                         | Auxiliary::OptionalStop => None,
+                        Auxiliary::LengthEnd => Some(Part::LengthEnd),
                         Auxiliary::Dwell(seconds) => {
                             values.push(("seconds", unsigned(*seconds, self.machine)));
                             None

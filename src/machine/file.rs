@@ -26,7 +26,7 @@ pub(super) fn parse(text: &str, source: SourceId) -> Result<Machine, Diagnostics
             None => return Err(unknown_machine(name, source).into()),
         },
     };
-    let mut at = Reader { source, diagnostics: Diagnostics::new() };
+    let mut at = Reader { source, declared: None, diagnostics: Diagnostics::new() };
     let machine = at.machine(file, base.as_ref());
     at.diagnostics.into_result()?;
     // Where a value is missing, a diagnostic said so.
@@ -47,6 +47,8 @@ fn unknown_machine(name: &Spanned<String>, source: SourceId) -> Diagnostic {
 
 struct Reader {
     source: SourceId,
+    /// The axes that the file declares.
+    declared: Option<Axes>,
     diagnostics: Diagnostics,
 }
 
@@ -109,6 +111,7 @@ impl Reader {
         }
         let axes_file = file.axes.unwrap_or_default();
         let axes = self.axes(&axes_file, base);
+        self.declared = axes;
         let digits = self.digits(&file.digits.unwrap_or_default(), base.map(|b| b.digits));
         if let (Some(digits), true) =
             (digits, dialect.motions.iter().any(|m| m.form == Form::Polynomial { closing: true }))
@@ -160,12 +163,13 @@ impl Reader {
         let arc_planes = self.arc_planes(file.arcs.unwrap_or_default(), dialect, base)?;
         let own = file.orientation.unwrap_or_default();
         let orientation = self.orientation(&own, dialect, base.map(|b| b.orientation))?;
-        let frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
+        let mut frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
+        frame.home_axis = self.home_axis(&frame);
         self.turns_as_stated(&frame, orientation, dialect);
         self.tilts(&frame);
         self.lengths(&frame);
         let cutter_axes = self.cutter_axes(axes_file.cutter.as_ref(), base)?;
-        Some(Machine {
+        let machine = Machine {
             name: self.or(file.name, base.map(|b| b.name.clone()), "name")?,
             about: self.or(file.about, base.map(|b| b.about.clone()), "about")?,
             dialect,
@@ -176,6 +180,7 @@ impl Reader {
                 "tolerance",
             )?,
             axes: axes?,
+            declared: axes?.as_slice().iter().map(|(axis, _)| *axis).collect(),
             cutter_axes,
             limits: self.limits(file.axis.unwrap_or_default(), axes.as_ref(), base),
             digits: digits?,
@@ -189,7 +194,9 @@ impl Reader {
             arc_planes,
             orientation,
             frame,
-        })
+        };
+        self.diagnostics.0.extend((dialect.lines)(&machine).0);
+        Some(machine)
     }
 
     fn axis(&mut self, name: &Spanned<String>) -> Option<Axis> {

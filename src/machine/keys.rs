@@ -109,6 +109,8 @@ pub const KEYS: &[Key] = &[
             Key::value("dwell"),
             Key::value("tip_control"),
             Key::value("tip_control_end"),
+            Key::value("length_end"),
+            Key::value("length_end_moves"),
             Key::value("plane"),
             Key::value("plane_end"),
             Key::value("shift"),
@@ -382,7 +384,7 @@ pub(super) struct OrientationFile {
 #[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProgramFile {
-    /// Before the first step; {name}, {number}, and {linear}: the linear axes, separated by commas.
+    /// Before the first step; {name}, {number}, and {linear}: the linear axes, separated by commas; {axes}: every axis of the machine at zero, a line with {i} once for each.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) header: Option<Vec<Spanned<String>>>,
     /// Whether comments behind the header say what to set up.
@@ -390,7 +392,7 @@ pub(super) struct ProgramFile {
     /// Behind the first retraction, or behind the header where nothing retracts: what may turn axes, as the end of a plane that is left over.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) start: Option<Vec<Spanned<String>>>,
-    /// The retraction in machine coordinates before a tool change and at the end; {home}: the axis and its home.
+    /// The retraction in machine coordinates before a tool change and at the end; {home}: the axis and its home, or one axis as it stands.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) home: Option<Vec<Spanned<String>>>,
     /// A tool call; {tool}, and {register} where its length may be that of another register than the number of the tool.
@@ -423,9 +425,14 @@ pub(super) struct ProgramFile {
     /// What leads the tip of the tool in five axes; {tool}, {register}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tip_control: Option<Vec<Spanned<String>>>,
-    /// What ends that.
+    /// What ends that; a line with {home} stands for Z, X and Y, each with its home, before the others.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) tip_control_end: Option<Vec<Spanned<String>>>,
+    /// What ends the length of a tool: at the end, where Z is at home and X and Y at theirs, and nowhere else.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub(super) length_end: Option<Vec<Spanned<String>>>,
+    /// Whether that may move an axis by the length.
+    pub(super) length_end_moves: Option<bool>,
     /// What tilts the plane in which positions count and turns the tool square to it; {first}, {second}, {third}: the angles in the order of plane_order, in one line; {tool}, {register}. Without it the tip of a tilted tool is led.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) plane: Option<Vec<Spanned<String>>>,
@@ -438,7 +445,7 @@ pub(super) struct ProgramFile {
     /// Behind lines that went round on an axis that wraps, in steps: counts it below 360 degrees again; {axis}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) unwind: Option<Vec<Spanned<String>>>,
-    /// After the last step; {name}.
+    /// After the last step; {name}, {axes}.
     #[schemars(with = "Option<Vec<String>>")]
     pub(super) footer: Option<Vec<Spanned<String>>>,
     /// Whether sections that are alike but for a work offset are written once and called.

@@ -7,12 +7,14 @@
 
 mod file;
 mod keys;
+pub mod line;
 mod parts;
 pub mod remark;
 pub mod template;
 
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dialect::parts::{home_word, spelled};
 use crate::source::SourceId;
 use crate::units::{Axes, Axis, Kind, MAX_AXES};
 pub use keys::{KEYS, schema};
@@ -162,7 +164,51 @@ impl Machine {
 
     /// Whether axis `i` can retract to a clear place in machine coordinates.
     pub fn retracts(&self, i: usize) -> bool {
-        self.home(i).is_some() && !self.frame.home.is_empty()
+        let own = self.frame.home_axis.is_none_or(|axis| axis == self.axes.name(i));
+        own && self.home(i).is_some() && !self.frame.home.is_empty()
+    }
+
+    /// Z, X and Y, where each can go to a place in machine coordinates: there the tool is clear of the work.
+    pub fn park(&self) -> Option<[usize; 3]> {
+        let index = |name: &str| Axis::new(name).and_then(|axis| self.axes.index_of(axis));
+        let [z, x, y] = ["Z", "X", "Y"].map(|name| index(name).filter(|i| self.retracts(*i)));
+        Some([z?, x?, y?])
+    }
+
+    /// Whether the lines of a tool call the length of the tool by a word of their own.
+    pub fn calls_length(&self) -> bool {
+        let mut lines = self.frame.tool.iter().chain(&self.frame.tool_spindle);
+        lines.any(|line| line::words(&line.0).iter().any(|word| word.is("G43")))
+    }
+
+    /// The machine with what it knows of itself filled into its lines: `{axes}`, every axis that it has at zero, and the homes
+    /// before tool centre point control ends.
+    #[must_use]
+    pub fn filled(&self) -> Machine {
+        let zeros: Vec<String> = self.declared.iter().map(|axis| self.zero(*axis)).collect();
+        let homes: Vec<String> = match self.park() {
+            Some(axes) => axes.iter().map(|axis| home_word(*axis, self)).collect(),
+            None => Vec::new(),
+        };
+        let mut machine = self.clone();
+        machine.frame.header = spread(&self.frame.header, "axes", &zeros);
+        machine.frame.footer = spread(&self.frame.footer, "axes", &zeros);
+        let ends = |line: &template::Template| line.variables().any(|name| name == "home");
+        let (home, other): (Vec<_>, Vec<_>) = self.frame.tip_control_end.iter().cloned().partition(ends);
+        // All lines that go home, axis by axis, and then those that end it.
+        let mut lines = Vec::new();
+        for word in &homes {
+            lines.extend(home.iter().map(|line| template::Template(line.fill(&[("home", word)]))));
+        }
+        lines.extend(other);
+        machine.frame.tip_control_end = lines;
+        machine
+    }
+
+    /// The word of an axis at zero.
+    fn zero(&self, axis: Axis) -> String {
+        let equals = if axis.as_str().len() == 1 { "" } else { "=" };
+        format!("{axis}{equals}{}", spelled(Decimal::ZERO, self))
     }
 
     /// Whether the length of a tool may be taken from any register: its lines have a place for the number, and no line that takes
@@ -203,6 +249,21 @@ impl Machine {
     pub fn axes_without_spline(&self, moving: &[Axis]) -> Vec<Axis> {
         moving.iter().copied().filter(|axis| !self.splines_move(*axis)).collect()
     }
+}
+
+/// Lines with all words in the place of a variable; a line with `{i}` once for each word.
+fn spread(lines: &[template::Template], variable: &str, words: &[String]) -> Vec<template::Template> {
+    let mut all = Vec::new();
+    for line in lines {
+        let has = |name: &str| line.variables().any(|own| own == name);
+        if has(variable) && has("i") {
+            let each = words.iter().enumerate();
+            all.extend(each.map(|(i, word)| line.fill(&[("i", &(i + 1).to_string()), (variable, word)])));
+        } else {
+            all.push(line.fill(&[(variable, &words.join(" "))]));
+        }
+    }
+    all.into_iter().map(template::Template).collect()
 }
 
 /// Whether a variable stands in some lines.
@@ -305,7 +366,7 @@ mod tests {
         };
         let refused = [
             ("mazak", "header", "\"O{number}({name})\", \"G91\"", "G91"),
-            ("mazak", "home", "\"G91 G28 Z{home}\"", "G91"),
+            ("mazak", "home", "\"G91 G28 {home}\"", "G91"),
             ("mazak", "header", "\"G17G20G90\"", "G20"),
             ("mazak", "tool", "\"T{tool} M6\", \"g95\"", "G95"),
             ("sinumerik", "header", "\"G90 G700\"", "G700"),
@@ -317,8 +378,8 @@ mod tests {
             assert!(message.contains(&format!("`{word}`")), "{lines}: {message}");
         }
         let allowed = [
-            ("mazak", "home", "\"G91 G28 Z{home}\", \"G90\""),
-            ("mazak", "header", "\"G91 G28 X0 G90 (G91 IS OVER)\""),
+            ("mazak", "home", "\"G91 G28 {home}\", \"G90\""),
+            ("mazak", "header", "\"G91 G28 X0\", \"G90 (G91 IS OVER)\""),
             ("sinumerik", "header", "\"; {name}, NO G91\", \"G910\", \"R91=1\""),
         ];
         for (dialect, key, lines) in allowed {

@@ -22,8 +22,10 @@ pub struct Machine {
     pub motion: Option<&'static Motion>,
     /// mm, where neither the command line nor the input says.
     pub tolerance: f64,
-    /// Its axes.
+    /// The axes of a program on it.
     pub axes: Axes,
+    /// All axes that it has, whether a program moves them or not.
+    pub declared: Vec<Axis>,
     /// Which of them are X, Y, Z and A of a cutter.
     pub cutter_axes: [Axis; 4],
     /// What each axis can do, where the file says.
@@ -263,6 +265,10 @@ pub struct Spline {
 
 /// The lines round a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a key of the machine file, or says what its lines do"
+)]
 pub struct Frame {
     /// Before the first step.
     pub header: Vec<Template>,
@@ -272,6 +278,8 @@ pub struct Frame {
     pub start: Vec<Template>,
     /// The retraction of an axis in machine coordinates.
     pub home: Vec<Template>,
+    /// The axis that these lines name themselves; none where any is filled in.
+    pub home_axis: Option<Axis>,
     /// A tool call.
     pub tool: Vec<Template>,
     /// The spindle's start.
@@ -294,6 +302,12 @@ pub struct Frame {
     pub tip_control: Vec<Template>,
     /// What ends that.
     pub tip_control_end: Vec<Template>,
+    /// Whether these lines go to the park place first.
+    pub tip_end_parks: bool,
+    /// What ends the length of a tool, at the park place.
+    pub length_end: Vec<Template>,
+    /// Whether that may move an axis by the length.
+    pub length_end_moves: bool,
     /// What tilts the plane in which positions count, and turns the tool square to it.
     pub plane: Vec<Template>,
     /// What ends that.
@@ -317,6 +331,33 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// All lists of lines, by their keys.
+    pub fn lists(&self) -> [(&'static str, &[Template]); 21] {
+        [
+            ("header", &self.header),
+            ("start", &self.start),
+            ("home", &self.home),
+            ("tool", &self.tool),
+            ("spindle", &self.spindle),
+            ("tool_spindle", &self.tool_spindle),
+            ("coolant", &self.coolant),
+            ("coolant_stop", &self.coolant_stop),
+            ("spindle_stop", &self.spindle_stop),
+            ("stop", &self.stop),
+            ("optional_stop", &self.optional_stop),
+            ("dwell", &self.dwell),
+            ("tip_control", &self.tip_control),
+            ("tip_control_end", &self.tip_control_end),
+            ("length_end", &self.length_end),
+            ("plane", &self.plane),
+            ("plane_end", &self.plane_end),
+            ("shift", &self.shift),
+            ("unwind", &self.unwind),
+            ("footer", &self.footer),
+            ("close", &self.close),
+        ]
+    }
+
     /// The lines of a switch or a dwell.
     pub fn auxiliary<N>(&self, auxiliary: &Auxiliary<N>) -> &[Template] {
         match auxiliary {
@@ -327,6 +368,7 @@ impl Frame {
             Auxiliary::Dwell(_) => &self.dwell,
             Auxiliary::TipControl => &self.tip_control,
             Auxiliary::TipControlEnd => &self.tip_control_end,
+            Auxiliary::LengthEnd => &self.length_end,
             Auxiliary::Plane(_) => &self.plane,
             Auxiliary::PlaneEnd => &self.plane_end,
         }

@@ -7,6 +7,7 @@
 
 mod coolant;
 mod named;
+mod park;
 mod plane;
 mod reach;
 mod tip;
@@ -51,6 +52,7 @@ pub fn place(mut intent: Intent, machine: &Machine) -> Result<Intent, Diagnostic
     whole::places(&mut intent, &machine)?;
     reach::reach(&mut intent)?;
     named::remarks(&mut intent, &machine);
+    park::park(&mut intent, &machine);
     Ok(intent)
 }
 

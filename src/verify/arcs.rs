@@ -251,6 +251,7 @@ pub fn spelled_auxiliary(auxiliary: &Auxiliary<f64>) -> String {
         Auxiliary::Dwell(seconds) => format!("a dwell of {seconds} s"),
         Auxiliary::TipControl => "that the tip is led".to_owned(),
         Auxiliary::TipControlEnd => "the end of leading the tip".to_owned(),
+        Auxiliary::LengthEnd => "the end of the tool's length".to_owned(),
         Auxiliary::Plane([first, second, third]) => {
             format!("a plane tilted by {first}, {second} and {third} degrees")
         }

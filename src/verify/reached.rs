@@ -2,8 +2,9 @@
 //!
 //! A path is proved from its start on, so that its start must be known: a block before it has brought every axis there. What
 //! brings an axis is a rapid or a path that ends in it. What makes it unknown again is its retraction, which leads to a place in
-//! machine coordinates; a tool call, which may move the machine as it likes; and every change of what places count from, a
-//! tilted plane and the control of the tool's tip. This is told from the blocks that were read alone, whatever a pass meant.
+//! machine coordinates; a tool call and the end of a length, which may move the machine as they like; and every change of what
+//! places count from, a tilted plane and the control of the tool's tip. This is told from the blocks that were read alone,
+//! whatever a pass meant.
 //!
 //! One block needs no start: a straight move that was asked from nowhere, to its end. It brings the tool, and names the axes that
 //! nothing has brought.
@@ -41,6 +42,7 @@ pub(super) fn unreached(decimals: &Decimals) -> Unreached {
             Step::Auxiliary(auxiliary) => match auxiliary {
                 Auxiliary::TipControl
                 | Auxiliary::TipControlEnd
+                | Auxiliary::LengthEnd
                 | Auxiliary::Plane(_)
                 | Auxiliary::PlaneEnd => at = [None; MAX_AXES],
                 Auxiliary::CoolantStop

@@ -154,7 +154,7 @@ fn run(dialect: &str, text: &str) -> Vec<Point> {
 }
 
 fn machines() -> impl Iterator<Item = (&'static Dialect, Machine)> {
-    let machine = |dialect: &'static Dialect| Machine::built_in(dialect.name).expect("a default machine");
+    let machine = |dialect: &'static Dialect| crate::support::five(dialect.name);
     splinepost::dialect::DIALECTS.iter().map(move |dialect| (dialect, machine(dialect)))
 }
 
@@ -360,7 +360,7 @@ fn a_circle_behind_a_helix_is_a_whole_one() {
 fn a_turn_more_or_less_is_refused() {
     let named = |name: &str| CASES.iter().find(|case| case.name == name).expect("a case");
     let refused = |name: &str, dialect: &str, from: &str, to: &str| {
-        let (case, machine) = (named(name), Machine::built_in(dialect).expect("a machine"));
+        let (case, machine) = (named(name), crate::support::five(dialect));
         let text = program(case.system(), &case.text(), &machine).expect("a program").text;
         assert!(text.contains(from), "{text}");
         let mut sources = Sources::new(Source::new("input.cl", case.text()));

@@ -4,7 +4,6 @@ use super::intent_as;
 use splinepost::diagnostic::{Diagnostics, Severity};
 use splinepost::geom::elementary;
 use splinepost::ir::{Curve, Intent, Step};
-use splinepost::machine::Machine;
 use splinepost::source::{Source, Sources};
 use splinepost::{Options, compile, front};
 use std::f64::consts::PI;
@@ -193,7 +192,7 @@ fn an_arc_with_points_is_one_block() {
         ("sinumerik", "G3 X40 Y10 I0 J10"),
         ("heidenhain", "C X+40 Y+10 DR+"),
     ] {
-        let machine = Machine::built_in(name).expect("a default machine");
+        let machine = crate::support::five(name);
         let creo = front::find("creo").expect("creo");
         let output = compile(&shop("along", &body), creo, &machine, &Options::default())
             .unwrap_or_else(|f| panic!("{name}: {f:?}"));

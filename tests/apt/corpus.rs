@@ -2,7 +2,6 @@
 
 use crate::support::folder;
 use splinepost::diagnostic::Severity;
-use splinepost::machine::Machine;
 use splinepost::source::{Source, SourceId, Sources};
 use splinepost::verify::Status;
 use splinepost::{Options, compile, front};
@@ -33,7 +32,7 @@ fn real_files_compile_and_verify_or_say_why_not() {
     for (name, refused) in FILES {
         let bytes = std::fs::read(corpus.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
         for dialect in splinepost::dialect::DIALECTS {
-            let machine = Machine::built_in(dialect.name).expect("a default machine");
+            let machine = crate::support::five(dialect.name);
             let sources = Sources::new(Source::decode(*name, bytes.clone()));
             let language =
                 front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");

@@ -1,4 +1,5 @@
-//! `fixtures/apt/<case>/`: CL data written by the project, and beside it the program of every dialect's default machine.
+//! `fixtures/apt/<case>/`: CL data written by the project, and beside it the program of every dialect's default machine, or of
+//! the `<dialect>.machine.toml` there.
 
 use super::{cases, input};
 use crate::support::{compare, fail_on, no_number, told};
@@ -17,7 +18,13 @@ fn every_case_has_its_programs() {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let mut known = BTreeSet::from([name.clone(), "input.stderr".to_owned()]);
         for (i, dialect) in splinepost::dialect::DIALECTS.iter().enumerate() {
-            let machine = Machine::built_in(dialect.name).expect("a default machine");
+            // A machine file beside the input stands in for the default one.
+            let own = format!("{}.machine.toml", dialect.name);
+            let machine = match fs::read_to_string(case.join(&own)) {
+                Ok(text) => crate::support::machine(&text),
+                Err(_) => Machine::built_in(dialect.name).expect("a default machine"),
+            };
+            known.insert(own);
             let mut sources = Sources::new(Source::decode(name.clone(), fs::read(&path).expect("an input")));
             let language =
                 front::detect(sources.get(SourceId::INPUT).expect("the input")).expect("a language");

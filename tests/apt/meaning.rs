@@ -85,7 +85,7 @@ fn an_end_that_was_rounded_makes_no_other_turn() {
         "PARTNO TINY\n{START}GOTO/10,0,0\nCIRCLE/5,0,0,0,0,1,5\nGOTO/9.99999999,0.00003,0\nGOTO/0,9,0\nFINI\n"
     );
     for dialect in splinepost::dialect::DIALECTS {
-        let machine = Machine::built_in(dialect.name).expect("a default machine");
+        let machine = crate::support::five(dialect.name);
         let output = program("creo", &text, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", dialect.name));
         assert!(output.report.expect("a proof").deviation.mm < 2e-4, "{}", dialect.name);
     }
@@ -153,7 +153,7 @@ fn a_rapid_is_one_shot_and_the_feed_returns() {
 fn a_damaged_arc_is_refused() {
     let text = format!("PARTNO ARC\n{START}CIRCLE/5,0,0,0,0,1,5\nGOTO/5,5,0\nGOTO/9,9,9\nFINI\n");
     for dialect in splinepost::dialect::DIALECTS {
-        let machine = Machine::built_in(dialect.name).expect("a default machine");
+        let machine = crate::support::five(dialect.name);
         let output = program("creo", &text, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", dialect.name));
         let is_arc = |line: &str| line.contains(" I5") || line.contains("CC ") || line.contains(" C X");
         let arcs: Vec<&str> = output.text.lines().filter(|line| is_arc(line)).collect();
@@ -197,7 +197,7 @@ fn the_map_leads_from_blocks_to_lines() {
         "PARTNO MAP\n{START}GOTO/10,0,0\nCIRCLE/10,5,0,0,0,1,5\nGOTO/10,10,-1\nGOTO/0,10,-1\nDELAY/1.5\nRAPID\nGOTO/0,0,9\nFINI\n"
     );
     for dialect in splinepost::dialect::DIALECTS {
-        let machine = Machine::built_in(dialect.name).expect("a default machine");
+        let machine = crate::support::five(dialect.name);
         let sources = Sources::new(Source::new("map.ncl", text.clone()));
         let language = front::find("creo").expect("creo");
         let output =
@@ -242,10 +242,7 @@ fn arcs_on_an_axis_that_counts_the_other_way() {
         ("heidenhain", "C X+5 Y+5 DR+", "C X-5 Y+5 DR-"),
     ] {
         let file = format!("extends = \"{name}\"\n[axis.X]\nsign = -1\n");
-        for (machine, word) in [
-            (Machine::built_in(name).expect("a default machine"), word),
-            (crate::support::machine(&file), other),
-        ] {
+        for (machine, word) in [(crate::support::five(name), word), (crate::support::machine(&file), other)] {
             let output = program("creo", &text, &machine).unwrap_or_else(|e| panic!("{name}: {e:?}"));
             assert!(output.text.contains(word), "{word}\n{}", output.text);
         }

@@ -80,7 +80,7 @@ fn figure_7_becomes_figure_8() {
 fn every_motion_is_proved_and_read_back_to_the_same_bytes() {
     for (name, input) in tilted() {
         for dialect in splinepost::dialect::DIALECTS {
-            let own = machine(&format!("extends = \"{}\"", dialect.name));
+            let own = crate::support::five(dialect.name);
             for motion in ["linear", "poly", "bspline"] {
                 if dialect.motion(motion).is_none() {
                     continue;
@@ -139,8 +139,7 @@ fn lines_follow_the_second_curve() {
     for (name, words) in
         [("heidenhain", ["X", "Y", "Z", "TX", "TY", "TZ"]), ("mazak", ["X", "Y", "Z", "I", "J", "K"])]
     {
-        let output =
-            in_motion(&text, &machine(&format!("extends = \"{name}\"")), "linear").expect("a program");
+        let output = in_motion(&text, &crate::support::five(name), "linear").expect("a program");
         // From where the curve starts, rounded, to where it ends.
         let all: Vec<Vec<f64>> = output
             .text
@@ -189,7 +188,7 @@ fn damaged_directions_are_refused() {
             ("heidenhain", "linear", &["TX", "TY", "TZ"]),
             ("mazak", "linear", &["I", "J", "K"]),
         ] {
-            let own = machine(&format!("extends = \"{name}\""));
+            let own = crate::support::five(name);
             let text = in_motion(&input, &own, motion).expect("a program").text;
             let lines: Vec<&str> = text.lines().collect();
             for (i, line) in lines.iter().enumerate() {
@@ -332,7 +331,7 @@ fn even_rotary_axes_are_told() {
 
 /// The first error or refusal of CL data on the default machine of a dialect.
 fn refused(text: &str, dialect: &str) -> &'static str {
-    let own = machine(&format!("extends = \"{dialect}\""));
+    let own = crate::support::five(dialect);
     let errors = program("iso", text, &own).map(|output| output.text).expect_err(text);
     errors.0.iter().find(|d| splinepost::diagnostic::Severity::Refusal <= d.severity).expect("an error").id
 }
@@ -415,8 +414,7 @@ fn a_tool_that_was_changed_is_nowhere_known() {
         ("heidenhain", "L X+10 Y+10 R0 FMAX\n30 L Z-3 F500\n31 L Z-8\n"),
         ("mazak", "G0 X10. Y10.\nG1 G43 H2 Z-3. F500.\nZ-8.\n"),
     ] {
-        let text =
-            program("iso", &input, &machine(&format!("extends = \"{dialect}\""))).expect("a program").text;
+        let text = program("iso", &input, &crate::support::five(dialect)).expect("a program").text;
         assert!(text.contains(block), "{text}");
     }
     // Without a home it would come from wherever the changer left it.
@@ -437,7 +435,10 @@ fn splines_that_keep_the_direction_are_lines_where_nothing_else_is_known() {
     let lines = fixed.lines().filter(|line| !line.starts_with("MOVNRB / 3"));
     let fixed = lines.collect::<Vec<_>>().join("\n").replace("0.0, 0.0, 1.0", "0.0, 0.6, 0.8") + "\n";
     for (dialect, motion) in [("heidenhain", "spl"), ("mazak", "g06.2")] {
-        let own = machine(&format!("extends = \"{dialect}\"\n[program]\nplane = []\n"));
+        let own = machine(&format!(
+            "extends = \"{dialect}\"\n{}[program]\nplane = []\n",
+            if dialect == "mazak" { crate::support::PARK } else { "" }
+        ));
         let output = program("creo", &fixed, &own).expect("a program");
         assert_eq!(output.motion.name, "linear");
         assert!(output.warnings.0.iter().any(|d| d.id == "spline-direction"), "{:?}", output.warnings);
@@ -454,7 +455,8 @@ fn splines_that_keep_the_direction_are_lines_where_nothing_else_is_known() {
 fn lines_under_even_rotary_axes_are_held_to_the_tolerance() {
     let (_, input) = tilted().into_iter().find(|(name, _)| name == "creo-second-curve").expect("the case");
     // Past Z the turn of C is large: no chord is short enough there.
-    let own = machine("extends = \"mazak\"\n[orientation]\nturn = \"tilt\"\n");
+    let own =
+        machine(&format!("extends = \"mazak\"\n{}[orientation]\nturn = \"tilt\"\n", crate::support::PARK));
     match program("creo", &input, &own) {
         Ok(output) => {
             let report = output.report.expect("a report");

@@ -10,7 +10,7 @@ use std::fs;
 const DIALECTS: [&str; 3] = ["sinumerik", "heidenhain", "mazak"];
 
 fn default(dialect: &str) -> Machine {
-    machine(&format!("extends = \"{dialect}\""))
+    crate::support::five(dialect)
 }
 
 fn case() -> String {
@@ -195,7 +195,7 @@ fn the_tool_turns_where_it_is_clear() {
         ("heidenhain", "L Z+0 R0 FMAX M91", "PLANE SPATIAL", ""),
         ("mazak", "G0 G53 Z0.", "G68.2", "G43 H"),
     ] {
-        let text = compiled(&case(), &default(dialect)).text;
+        let text = compiled(&case(), &machine(&format!("extends = \"{dialect}\""))).text;
         let lines: Vec<&str> = text.lines().collect();
         let tilts: Vec<usize> = (0..lines.len()).filter(|i| lines[*i].contains(tilt)).collect();
         assert_eq!(tilts.len(), 4, "{text}");
@@ -319,7 +319,10 @@ fn where_the_tool_turns_at_feed_its_tip_is_led() {
         let text = compiled(&input, &default(dialect)).text;
         assert!(text.contains(led) && !text.contains(plane), "{text}");
         // So it is where a machine has no planes.
-        let without = machine(&format!("extends = \"{dialect}\"\n[program]\nplane = []\n"));
+        let without = machine(&format!(
+            "extends = \"{dialect}\"\n{}[program]\nplane = []\n",
+            if dialect == "mazak" { crate::support::PARK } else { "" }
+        ));
         let text = compiled(&slanted, &without).text;
         assert!(text.contains(led) && !text.contains(plane), "{text}");
     }
@@ -421,7 +424,8 @@ fn a_unit_of_the_last_decimal_turns_no_tool() {
         assert!((rad - 1.0e-5).abs() < 1.0e-10, "{dialect}: {rad}");
         verified(input, &output.text, &own).unwrap_or_else(|errors| panic!("{dialect}: {errors:?}"));
         // With a tolerance that they exceed the tool turns while it cuts, and a note says where.
-        let strict = machine(&format!("extends = \"{dialect}\"\n[orientation]\ntolerance = 0.001\n"));
+        let park = if dialect == "mazak" { crate::support::PARK } else { "" };
+        let strict = machine(&format!("extends = \"{dialect}\"\n{park}[orientation]\ntolerance = 0.001\n"));
         let mut output = compiled(input, &strict);
         output.warnings.0.retain(|d| d.id != "number-unchosen");
         assert!(axes(&output.text).is_empty(), "{}", output.text);

@@ -35,7 +35,7 @@ const CREO: &str = "PARTNO REF\nRAPID\nGOTO/0,0,10\nFEDRAT/1000,MMPM\nGOTO/0,0,0
     GOTO/120,0,10\nFINI\n";
 
 fn machine(dialect: &Dialect) -> Machine {
-    Machine::built_in(dialect.name).expect("a default machine")
+    crate::support::five(dialect.name)
 }
 
 fn in_motion(language: &str, text: &str, machine: &Machine, motion: &str) -> Output {
@@ -137,7 +137,7 @@ fn the_seeds_control_points_and_knot_distances_are_kept() {
     // Five and six decimals: nothing is rounded but by Mazak's and Heidenhain's four, half of which in each axis is
     // 8.7e-5 mm together; knots of four decimals add to that.
     for dialect in splinepost::dialect::DIALECTS {
-        let machine = Machine::built_in(dialect.name).expect("a default machine");
+        let machine = crate::support::five(dialect.name);
         let output = program("catia", text, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", dialect.name));
         let deviation = output.report.expect("a proof").deviation.mm;
         let bound = if dialect.name == "sinumerik" { 1e-4 } else { 3e-4 };
@@ -197,7 +197,7 @@ fn damage_to_a_spline_is_refused() {
         ("heidenhain", "spl", &plain),
         ("mazak", "g06.2", &text),
     ] {
-        let machine = Machine::built_in(name).expect("a machine");
+        let machine = crate::support::five(name);
         let output = in_motion("catia", text, &machine, motion);
         let mut tried = 0;
         for (from, to) in [

@@ -8,6 +8,7 @@
 //! | `damaged` | the remarks at which an operator restarts a program, each with every fault |
 //! | `generated` | random inputs on random machines, none of which compile refuses by its own proof |
 //! | `left` | what a program leaves behind on the control, at tool changes and at its end, and what its remarks are made of |
+//! | `lines` | the lines of machine files: read word by word, and where a word of theirs may move an axis |
 //! | `nc` | programs of other posts and written by hand: read right, or refused |
 //! | `proof` | lengths, times and bounds, and programs that were refused by their own proof |
 //! | `starts` | where paths begin, and cuts without length |
@@ -18,6 +19,7 @@ mod curves;
 mod damaged;
 mod generated;
 mod left;
+mod lines;
 mod nc;
 mod proof;
 mod starts;

@@ -35,7 +35,8 @@ impl Terms {
 
     /// For a machine.
     pub(super) fn of(machine: &Machine) -> Terms {
-        let frame = &machine.frame;
+        let filled = machine.filled();
+        let frame = &filled.frame;
         let calls = [
             &frame.tool,
             &frame.spindle,
@@ -51,6 +52,7 @@ impl Terms {
             &frame.dwell,
             &frame.tip_control,
             &frame.tip_control_end,
+            &frame.length_end,
             &frame.plane,
             &frame.plane_end,
             &frame.shift,

@@ -222,17 +222,22 @@ impl Control<'_> {
     /// The axis that retracts goes home, in machine coordinates. Where that is from the work's zero nobody knows.
     fn go_home(&mut self, block: &Block) {
         let (axis, _) = self.job.retract;
-        let is_home = match (self.job.home, block.targets.first_key_value()) {
-            (Some(home), Some((to, Target::To(Value::Number(at))))) => {
-                block.targets.len() == 1 && *to == axis && *at == home
+        // The axis that retracts goes first; where it is home others may go to theirs.
+        let is_home = block.targets.iter().all(|(to, target)| match target {
+            Target::To(Value::Number(at)) => {
+                (*to == axis || self.home) && self.job.homes.get(to).is_some_and(|home| home == at)
             }
-            _ => false,
-        };
+            Target::To(Value::Parameter(_)) | Target::Short(_) | Target::By(_) => false,
+        });
+        let is_home = is_home && block.targets.len() == 1;
         self.require(is_home, Rule::Home, "this is not the home of the axis that retracts");
         self.require(self.modal.motion == Some(Motion::Rapid), Rule::Home, "the way home is not a rapid");
-        // M91 leaves the length out by itself.
-        let free = self.modal.length == Length::Cancelled || self.job.dialect == Dialect::Heidenhain;
+        // M91 leaves the length out by itself; whether G53 does no manual says, and it is called again behind it.
+        let free = self.modal.length == Length::Cancelled || self.job.dialect != Dialect::Sinumerik;
         self.require(free, Rule::Home, "the tool's length may count on the way home");
+        if self.job.dialect == Dialect::Mazak {
+            self.modal.length = Length::Unknown;
+        }
         self.require(self.phase != Phase::Cutting, Rule::Order, "the path is not followed by the retraction");
         self.states();
         self.phase = Phase::Away;

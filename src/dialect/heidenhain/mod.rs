@@ -65,6 +65,7 @@ mod words;
 mod write;
 
 use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, Parameter, Round, is_device};
+use crate::diagnostic::Diagnostics;
 use crate::geom::arc::Plane;
 
 /// The dialect.
@@ -94,6 +95,8 @@ pub const DIALECT: Dialect = Dialect {
     passes_labels: true,
     replaces_shift: None,
     adds_shift: &[],
+    lines: |_| Diagnostics::new(),
+    ends_length: &[],
     inverse_time: false,
     round: Round::Step,
     arcs: Arcs {

@@ -58,7 +58,8 @@ impl Writer<'_> {
                 }
                 // A program can be restarted at each tool.
                 Part::Tool(..) => self.modal.forget(),
-                Part::Spindle | Part::TipControl(_) => {}
+                Part::TipControl(false) if self.modal.machine.frame.tip_end_parks => self.modal.forget(),
+                Part::Spindle | Part::TipControl(_) | Part::LengthEnd => {}
                 Part::Plane => self.modal.forget(),
                 Part::Home(axis) => self.modal.lose(axis),
                 Part::Shift(shifts) => self.modal.shift(shifts),
@@ -91,7 +92,12 @@ impl Writer<'_> {
                 Part::Cut(cut) => {
                     matches!(&cut.curve, Written::Lines(points) if self.modal.goes_round(points, i))
                 }
-                Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::TipControl(_) | Part::Plane => true,
+                Part::Tool(..)
+                | Part::Spindle
+                | Part::Home(_)
+                | Part::TipControl(_)
+                | Part::LengthEnd
+                | Part::Plane => true,
                 Part::Shift(_) | Part::Body | Part::Fixed(_) | Part::Remark(_) | Part::Comment(_) => {
                     self.goes_on
                 }

@@ -57,15 +57,15 @@
 //! | P | of its curve |
 //! | K, R; I J K of arcs and of the tool's direction | never |
 
+mod lines;
 mod read;
 mod write;
 
 use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round};
 use crate::geom::arc::Plane;
-use crate::ir::ThroughKind;
+use crate::ir::{ThroughKind, ToolCall};
 use crate::machine::Machine;
 use crate::machine::template::Template;
-use std::borrow::Cow;
 
 /// Mazak.
 pub const MAZAK: Dialect = Dialect {
@@ -110,6 +110,8 @@ pub const MAZAK: Dialect = Dialect {
     passes_labels: false,
     replaces_shift: None,
     adds_shift: &["G91", "G92", "G51", "G51.1", "G68"],
+    lines: lines::check,
+    ends_length: &["G49"],
     inverse_time: true,
     round: Round::Place,
     arcs: Arcs {
@@ -144,39 +146,34 @@ fn is_block(line: &str) -> bool {
     !line.starts_with(['(', '%', 'O'])
 }
 
-/// The line of a tool call that does not stand alone: without an axis G43 moves Z by the offset on some controls, so it
-/// is written into the first block of Z.
-const OFFSET: &str = "G43 H{tool}";
-
-/// The same with a register that need not have the number of the tool.
-const FREE_OFFSET: &str = "G43 H{register}";
-
-/// A machine whose tool calls do not end with [`OFFSET`], and whether those lines did.
-struct Offset<'m> {
-    machine: Cow<'m, Machine>,
+/// A machine without the lines that call the length of a tool, and what stands behind H in them.
+///
+/// Without an axis G43 moves Z by the offset on some controls, so that it is written into the first block of Z.
+struct Offset {
+    machine: Machine,
     /// In `tool`.
-    tool: bool,
+    tool: Option<Template>,
     /// In `tool_spindle`.
-    tool_spindle: bool,
-    /// Whether the register may have another number than the tool.
-    free: bool,
+    tool_spindle: Option<Template>,
 }
 
-impl<'m> Offset<'m> {
-    fn new(machine: &'m Machine) -> Offset<'m> {
-        let ends = |lines: &[Template]| {
-            lines.last().is_some_and(|line| [OFFSET, FREE_OFFSET].contains(&line.0.as_str()))
-                && 1 < lines.len()
+impl Offset {
+    fn new(machine: &Machine) -> Offset {
+        let mut machine = machine.filled();
+        // What is wrong with them a machine file was refused for.
+        let take = |lines: &mut Vec<Template>| {
+            let register = lines::register(lines).ok().flatten();
+            if register.is_some() {
+                lines.pop();
+            }
+            register
         };
-        let free = machine.has_registers();
-        let (tool, tool_spindle) = (ends(&machine.frame.tool), ends(&machine.frame.tool_spindle));
-        let mut without = Cow::Borrowed(machine);
-        if tool {
-            without.to_mut().frame.tool.pop();
-        }
-        if tool_spindle {
-            without.to_mut().frame.tool_spindle.pop();
-        }
-        Offset { machine: without, tool, tool_spindle, free }
+        let (tool, tool_spindle) = (take(&mut machine.frame.tool), take(&mut machine.frame.tool_spindle));
+        Offset { machine, tool, tool_spindle }
     }
+}
+
+/// What stands behind H for the length of a tool.
+fn register(template: &Template, call: ToolCall) -> String {
+    template.fill(&[("tool", &call.number.to_string()), ("register", &call.register().to_string())])
 }

@@ -21,6 +21,7 @@ use crate::dialect::frame::{Frame, Met};
 use crate::geom::arc::{Plane, Sense};
 use crate::ir::{Step, ThroughKind, Units, Written, WrittenPoints};
 use crate::machine::Machine;
+use crate::machine::template::Template;
 use crate::source::{SourceId, Span};
 use crate::units::{Axis, MAX_AXES};
 use nurbs::NurbsRun;
@@ -92,8 +93,8 @@ struct Reader<'m> {
     offset_tool: Option<u32>,
     /// The register whose length this section may call again, once.
     offset_again: Option<u32>,
-    /// Whether the register may have another number than the tool.
-    offset_free: bool,
+    /// How the register of a length is written behind H.
+    offset_call: Option<Template>,
     /// Whether a second % ended the text.
     ended: bool,
     /// Whether a line was read.
@@ -119,7 +120,7 @@ pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Wa
         offset_due: None,
         offset_tool: None,
         offset_again: None,
-        offset_free: false,
+        offset_call: None,
         ended: false,
         begun: false,
         warned_left_out: false,

@@ -1,6 +1,6 @@
 //! Spells a legal program for ISO controls.
 
-use super::{Offset, is_block};
+use super::{Offset, is_block, register};
 use crate::decimal::{Decimal, write_units};
 use crate::dialect::arc;
 use crate::dialect::block::expected_size;
@@ -37,13 +37,13 @@ struct Writer<'a> {
     decimals: &'a Decimals,
     /// Which axis is Z.
     z: Option<usize>,
-    offset: &'a Offset<'a>,
-    /// The tool whose length offset is still to be called.
-    offset_due: Option<u32>,
-    /// The tool whose length offset is in force, and which this section calls again with its first rapid of Z.
-    offset_again: Option<u32>,
-    /// The tool whose length offset each section calls.
-    offset_tool: Option<u32>,
+    offset: &'a Offset,
+    /// The register of the length that is still to be called.
+    offset_due: Option<String>,
+    /// The register of the length that is in force, and which this section calls again with its first rapid of Z.
+    offset_again: Option<String>,
+    /// The register of the length that each section calls.
+    offset_tool: Option<String>,
     /// Whether the tip of the tool is led.
     led: bool,
     /// Whether the last motion is G06.1, which a comment does not end.
@@ -86,15 +86,15 @@ impl Writer<'_> {
                 Part::Fixed(line) => self.line(line),
                 Part::Tool(call, lines) => {
                     let called = match lines {
-                        ToolLines::WithSpindle => self.offset.tool_spindle,
-                        ToolLines::Alone => self.offset.tool,
+                        ToolLines::WithSpindle => &self.offset.tool_spindle,
+                        ToolLines::Alone => &self.offset.tool,
                     };
                     // A program can be restarted at each tool.
                     self.leave_plane();
                     self.modal.forget();
                     self.plane = None;
-                    self.offset_tool = called.then_some(call.register());
-                    self.offset_due = self.offset_tool;
+                    self.offset_tool = called.as_ref().map(|called| register(called, *call));
+                    self.offset_due.clone_from(&self.offset_tool);
                 }
                 Part::Spindle => {}
                 // The lines that lead the tip hold the length of the tool.
@@ -104,8 +104,12 @@ impl Writer<'_> {
                 }
                 Part::TipControl(false) => {
                     self.led = false;
-                    self.offset_due = self.offset_tool;
+                    self.offset_due.clone_from(&self.offset_tool);
+                    if self.modal.machine.frame.tip_end_parks {
+                        self.modal.forget();
+                    }
                 }
+                Part::LengthEnd => self.offset_due.clone_from(&self.offset_tool),
                 Part::Plane => {
                     self.leave_plane();
                     self.modal.forget();
@@ -114,7 +118,7 @@ impl Writer<'_> {
                 Part::Home(axis) => {
                     self.modal.lose(*axis);
                     self.modal.motion = None;
-                    self.offset_due = self.offset_tool.filter(|_| !self.led);
+                    self.offset_due = self.offset_tool.clone().filter(|_| !self.led);
                 }
                 Part::Shift(shifts) => self.modal.shift(shifts),
                 Part::Remark(text) => self.line(&format!("({text})")),
@@ -122,11 +126,11 @@ impl Writer<'_> {
                     self.line(&format!("({text})"));
                     self.modal.forget();
                     self.plane = None;
-                    self.offset_again = self.offset_tool.filter(|_| !self.led);
+                    self.offset_again = self.offset_tool.clone().filter(|_| !self.led);
                 }
                 Part::Body => {
                     self.modal.forget();
-                    self.offset_again = self.offset_tool.filter(|_| !self.led);
+                    self.offset_again = self.offset_tool.clone().filter(|_| !self.led);
                 }
                 Part::Rapid(targets) => self.rapid(targets),
                 Part::Cut(cut) => {
@@ -155,6 +159,7 @@ impl Writer<'_> {
                 | Part::Shift(_)
                 | Part::Body
                 | Part::Plane
+                | Part::LengthEnd
                 | Part::TipControl(_) => self.through,
                 Part::Tool(..) | Part::Spindle | Part::Home(_) | Part::Rapid(_) => false,
                 Part::Cut(cut) => matches!(cut.curve, Written::Through(..)),
@@ -176,8 +181,8 @@ impl Writer<'_> {
         }
         if targets.iter().any(|(axis, _)| Some(*axis) == self.z) {
             let again = self.offset_again.take();
-            if let Some(h) = self.offset_due.take().or(again) {
-                self.modal.text(&format!("G43 H{h} "));
+            if let Some(register) = self.offset_due.take().or(again) {
+                self.modal.text(&format!("G43 H{register} "));
             }
         }
         self.modal.targets(targets);
@@ -186,7 +191,7 @@ impl Writer<'_> {
 
     /// Calls a length that is due: in the first line where that names Z, otherwise in a block of its own.
     fn offset_before(&mut self, curve: &Written) {
-        let Some(h) = self.offset_due else { return };
+        let Some(register) = self.offset_due.clone() else { return };
         let names_z = |points: &WrittenPoints| {
             let mut ends = points.points();
             self.z.zip(ends.next()).is_some_and(|(z, end)| self.modal.position[z] != Some(end[z]))
@@ -197,7 +202,7 @@ impl Writer<'_> {
         };
         if !waits {
             self.offset_due = None;
-            self.line(&format!("G43 H{h}"));
+            self.line(&format!("G43 H{register}"));
         }
     }
 
@@ -208,9 +213,9 @@ impl Writer<'_> {
             self.modal.begin("N");
             self.modal.motion("G1");
             if i == 0
-                && let Some(h) = self.offset_due.take()
+                && let Some(register) = self.offset_due.take()
             {
-                self.modal.text(&format!("G43 H{h} "));
+                self.modal.text(&format!("G43 H{register} "));
             }
             self.modal.inverse(rate.is_some());
             self.modal.moved_axes(point);

@@ -82,6 +82,7 @@ mod words;
 mod write;
 
 use super::{ArcWord, Arcs, Dialect, Form, Granted, Motion, NurbsRules, Parameter, Round, is_device};
+use crate::diagnostic::Diagnostics;
 use crate::geom::arc::Plane;
 use crate::ir::ThroughKind;
 use crate::machine::Machine;
@@ -136,6 +137,8 @@ pub const DIALECT: Dialect = Dialect {
     passes_labels: true,
     replaces_shift: Some("TRANS"),
     adds_shift: &["ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR", "G58", "G59", "G91"],
+    lines: |_| Diagnostics::new(),
+    ends_length: &["D0"],
     inverse_time: false,
     round: Round::Shortest,
     arcs: Arcs {

@@ -126,6 +126,7 @@ struct Reader<'m> {
 
 /// Reads a program.
 pub(super) fn read(text: &str, source: SourceId, machine: &Machine) -> Result<Warned<Reading>, Diagnostics> {
+    let machine = &machine.filled();
     let mut frame = Frame::new(machine);
     let lines = Lines::new(text, machine);
     let mut numbering = Numbering::new(machine, &lines);

@@ -95,9 +95,14 @@ impl Writer<'_> {
                 }
                 // A program can be restarted at each tool.
                 Part::Tool(..) => self.forget(),
-                Part::Spindle => {}
+                Part::Spindle | Part::LengthEnd => {}
                 // The machine's own lines say how the tool turns.
-                Part::TipControl(_) => self.second = false,
+                Part::TipControl(led) => {
+                    if !led && self.modal.machine.frame.tip_end_parks {
+                        self.forget();
+                    }
+                    self.second = false;
+                }
                 Part::Plane => self.forget(),
                 Part::Home(axis) => {
                     self.modal.lose(axis);

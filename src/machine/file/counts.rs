@@ -1,18 +1,19 @@
 //! What numbers of a program count: least increments or whole ones, and from where.
 
 use super::Reader;
-use super::parts::words;
 use crate::decimal::Decimal;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
+use crate::machine::line::words;
 use toml::Spanned;
 
 impl Reader {
     /// The lines of a work offset state all of it, from the work's own zero.
     pub(super) fn counts_from_zero(&mut self, shift: &[Spanned<String>], dialect: &Dialect) {
         for line in shift {
-            let adds = |word: &String| dialect.adds_shift.contains(&word.as_str());
-            if let Some(word) = words(line.get_ref()).into_iter().find(adds) {
+            let all = words(line.get_ref());
+            let adds = |code: &&&str| all.iter().any(|word| word.is(code));
+            if let Some(word) = dialect.adds_shift.iter().find(adds) {
                 let message = format!("`{word}` makes no work offset that counts from the work's own zero");
                 self.error("shift-adds", message, line.span());
             }

@@ -7,6 +7,7 @@ use crate::geom::rotation::Order;
 use crate::machine::keys::{
     ArcsFile, AxisFile, DigitsFile, OrientationFile, ParameterFile, ProgramFile, SplineFile,
 };
+use crate::machine::line::{Word, words};
 use crate::machine::template::Template;
 use crate::machine::{
     AxisLimits, Digits, FirstPoint, Frame, Machine, Moves, Orientation, Parameters, PlaneApproach, Spline,
@@ -306,9 +307,9 @@ impl Reader {
             let mut last = None;
             for line in lines {
                 for word in words(line.get_ref()) {
-                    if granted.wrong.contains(&word.as_str()) {
-                        last = Some((word, line.span()));
-                    } else if granted.right.contains(&word.as_str()) {
+                    if let Some(wrong) = granted.wrong.iter().find(|code| word.is(code)) {
+                        last = Some((*wrong, line.span()));
+                    } else if granted.right.iter().any(|code| word.is(code)) {
                         last = None;
                     }
                 }
@@ -331,7 +332,7 @@ impl Reader {
             Turn::GreatCircle => evenly,
             Turn::Tilt => plane,
         };
-        if frame.tip_control.iter().any(|line| line.0.split_whitespace().any(|word| word == wrong)) {
+        if frame.tip_control.iter().any(|line| words(&line.0).iter().any(|word| word.is(wrong))) {
             let message = format!("tip_control says {wrong}, and [orientation] turn another way");
             self.diagnostics.push(
                 Diagnostic::error("orientation-turn", message)
@@ -368,7 +369,7 @@ impl Reader {
     /// and D1 says no more than that does. A retraction by G49 is not looked at: a control that takes the length from its tool
     /// data has no G43.
     pub(super) fn lengths(&mut self, frame: &Frame) {
-        let edge = |lines: &[Template]| lines.iter().filter_map(|line| last_edge(&line.0)).next_back();
+        let edge = |lines: &[Template]| lines.iter().filter_map(last_edge).next_back();
         if edge(&frame.home) != Some(false) {
             return;
         }
@@ -391,6 +392,52 @@ impl Reader {
         }
     }
 
+    /// The axis that the lines of `home` name themselves, as `G91 G28 Z0.` does; none where one is filled in.
+    pub(super) fn home_axis(&mut self, frame: &Frame) -> Option<Axis> {
+        let all: Vec<Word> = frame.home.iter().flat_map(|line| words(&line.0)).collect();
+        if all.is_empty() || all.iter().any(|word| word.has("home")) {
+            return None;
+        }
+        let declared = self.declared?;
+        let axis = |word: &Word| {
+            let axis = Axis::new(&word.address).filter(|axis| declared.index_of(*axis).is_some())?;
+            word.number().map(|_| axis)
+        };
+        let named: Vec<Axis> = all.iter().filter_map(axis).collect();
+        let [axis] = named[..] else {
+            let axes = if named.is_empty() { "no axis" } else { "several axes" };
+            let message = format!("home names {axes}, so that no program knows which one it retracts");
+            let error = Diagnostic::error("home-axis", message);
+            self.diagnostics.push(error.hint("write {home} where the axis and its home stand, or one axis"));
+            return None;
+        };
+        Some(axis)
+    }
+
+    /// A line names no axis that the machine lacks: the control stops there.
+    fn names_its_axes(&mut self, line: &Spanned<String>) {
+        let Some(declared) = self.declared else { return };
+        let all = words(line.get_ref());
+        // Their letters are arguments.
+        let macros = ["G4", "G04", "G10", "G65", "G66"];
+        if all.iter().any(|word| macros.iter().any(|code| word.is(code))) {
+            return;
+        }
+        let missing = |word: &&Word| {
+            let letter =
+                word.address.len() == 1 && "XYZABCUVW".contains(&word.address) && word.number().is_some();
+            letter && Axis::new(&word.address).is_none_or(|axis| declared.index_of(axis).is_none())
+        };
+        if let Some(word) = all.iter().find(missing) {
+            let message =
+                format!("`{}{}` names an axis that the machine does not have", word.address, word.text());
+            let span = Span::new(self.source, line.span());
+            let error = Diagnostic::error("axis-unknown", message).at(span, "");
+            self.diagnostics
+                .push(error.hint("name it under [axes], or write {axes}: every axis of the machine at zero"));
+        }
+    }
+
     fn lines(
         &mut self,
         own: Option<Vec<Spanned<String>>>,
@@ -403,6 +450,7 @@ impl Reader {
         self.say_what_is_granted(&own, dialect);
         let mut lines = Vec::new();
         for line in own {
+            self.names_its_axes(&line);
             let template = Template(line.get_ref().clone());
             let strange = template.variables().find(|v| !variables.contains(v)).map(str::to_owned);
             if let Some(strange) = strange {
@@ -445,11 +493,18 @@ impl Reader {
         let lines = |this: &mut Self, own, of: fn(&Frame) -> &Vec<Template>, key, variables: &[&str]| {
             this.lines(own, base.map(of), key, variables, dialect)
         };
-        Some(Frame {
-            header: lines(self, file.header, |b| &b.header, "header", &["name", "number", "linear"])?,
+        let frame = Frame {
+            header: lines(
+                self,
+                file.header,
+                |b| &b.header,
+                "header",
+                &["name", "number", "linear", "axes", "i"],
+            )?,
             setup: self.or(file.setup, base.map(|b| b.setup), "program.setup")?,
             start: lines(self, file.start, |b| &b.start, "start", &[])?,
             home: lines(self, file.home, |b| &b.home, "home", &["home"])?,
+            home_axis: None,
             tool: lines(self, file.tool, |b| &b.tool, "tool", &["tool", "register"])?,
             spindle: lines(self, file.spindle, |b| &b.spindle, "spindle", &["rpm"])?,
             tool_spindle: lines(
@@ -477,7 +532,14 @@ impl Reader {
                 file.tip_control_end,
                 |b| &b.tip_control_end,
                 "tip_control_end",
-                &[],
+                &["home"],
+            )?,
+            tip_end_parks: false,
+            length_end: lines(self, file.length_end, |b| &b.length_end, "length_end", &[])?,
+            length_end_moves: self.or(
+                file.length_end_moves,
+                base.map(|b| b.length_end_moves),
+                "program.length_end_moves",
             )?,
             plane: lines(
                 self,
@@ -489,13 +551,15 @@ impl Reader {
             plane_end: lines(self, file.plane_end, |b| &b.plane_end, "plane_end", &[])?,
             shift: lines(self, file.shift, |b| &b.shift, "shift", &["words", "i"])?,
             unwind: lines(self, file.unwind, |b| &b.unwind, "unwind", &["axis"])?,
-            footer: lines(self, file.footer, |b| &b.footer, "footer", &["name"])?,
+            footer: lines(self, file.footer, |b| &b.footer, "footer", &["name", "axes", "i"])?,
             subprograms: self.or(file.subprograms, base.map(|b| b.subprograms), "program.subprograms")?,
             call: self.line(file.call, base.map(|b| &b.call), "call", dialect)?,
             begin: self.line(file.begin, base.map(|b| &b.begin), "begin", dialect)?,
             end: self.line(file.end, base.map(|b| &b.end), "end", dialect)?,
             close: lines(self, file.close, |b| &b.close, "close", &["name"])?,
-        })
+        };
+        let parks = frame.tip_control_end.iter().any(|line| line.variables().any(|name| name == "home"));
+        Some(Frame { tip_end_parks: parks, ..frame })
     }
 
     /// A line of subprograms.
@@ -512,46 +576,8 @@ impl Reader {
     }
 }
 
-/// The words of a line without its comments: `G17G21 (XY, MM)` is G17 and G21.
-pub(super) fn words(line: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let (mut brackets, mut before) = (0usize, ' ');
-    for c in line.chars().take_while(|c| *c != ';') {
-        match c {
-            '(' | '{' => brackets += 1,
-            ')' | '}' => brackets = brackets.saturating_sub(1),
-            _ if 0 < brackets => {}
-            ' ' => words.push(String::new()),
-            _ => {
-                if before.is_ascii_digit() && c.is_ascii_alphabetic() {
-                    words.push(String::new());
-                }
-                if let Some(word) = words.last_mut() {
-                    word.push(c.to_ascii_uppercase());
-                }
-            }
-        }
-        before = c;
-    }
-    words
-}
-
 /// Whether the last D of a line calls a length of the tool or, D0, ends it; none where it has no D: `T1D1`, `D=2`, `D{tool}`.
-fn last_edge(line: &str) -> Option<bool> {
-    let line = line.split(';').next().unwrap_or_default().to_ascii_uppercase();
-    let (mut last, mut quoted, mut before) = (None, false, ' ');
-    for (at, c) in line.char_indices() {
-        quoted ^= c == '"';
-        if c == 'D' && !quoted && !before.is_ascii_alphabetic() && before != '_' {
-            let value = line[at + 1..].trim_start().trim_start_matches('=').trim_start();
-            let digits: &str = &value[..value.bytes().take_while(u8::is_ascii_digit).count()];
-            match digits {
-                "" if value.starts_with('{') => last = Some(true),
-                "" => {}
-                digits => last = Some(digits.bytes().any(|digit| digit != b'0')),
-            }
-        }
-        before = c;
-    }
-    last
+fn last_edge(line: &Template) -> Option<bool> {
+    let mut edges = words(&line.0).into_iter().filter(|word| word.address == "D" && !word.value.is_empty());
+    edges.next_back().map(|edge| edge.number() != Some(0.0))
 }

@@ -58,7 +58,11 @@ pub(super) fn reach(intent: &mut Intent) -> Result<(), Diagnostics> {
             Step::Home(axis) => brought[axis] = false,
             Step::Tool(_)
             | Step::Auxiliary(
-                Auxiliary::TipControl | Auxiliary::TipControlEnd | Auxiliary::Plane(_) | Auxiliary::PlaneEnd,
+                Auxiliary::TipControl
+                | Auxiliary::TipControlEnd
+                | Auxiliary::LengthEnd
+                | Auxiliary::Plane(_)
+                | Auxiliary::PlaneEnd,
             ) => brought = [false; MAX_AXES],
             Step::Rapid(ref targets) => targets.iter().for_each(|(axis, _)| brought[*axis] = true),
             Step::Comment(_) | Step::Spindle(_) | Step::Coolant | Step::Shift(_) | Step::Auxiliary(_) => {}

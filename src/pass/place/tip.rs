@@ -40,6 +40,9 @@ struct Walk {
 pub(super) fn lead(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnostics> {
     let axes = intent.program.axes;
     let Some(first) = axes.direction() else { return Ok(()) };
+    if let Some(located) = intent.program.steps.first() {
+        super::park::parks_before(machine, located.span)?;
+    }
     let steps = std::mem::take(&mut intent.program.steps);
     let stated = machine.orientation.safe_height;
     let mut walk = Walk {

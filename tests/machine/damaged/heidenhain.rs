@@ -3,8 +3,8 @@
 use super::Edit::{After, Before, Down, Drop, Limit, Put, Wraps};
 use super::Fault;
 use crate::machine::Rule::{
-    Call, Clear, Coolant, End, Feed, Header, Home, Incremental, Index, Modulo, Offset, Order, Parameter,
-    Position, Range, Restart, Speed, Spindle, Spl, Tool, Turn, Word,
+    Axis, Call, Clear, Coolant, Direction, End, Feed, Header, Home, Incremental, Index, Left, Modulo, Offset,
+    Order, Parameter, Position, Range, Remark, Restart, Speed, Spindle, Spl, Tool, Turn, Upright, Word,
 };
 
 /// One path of four, each an SPL block.
@@ -18,13 +18,25 @@ const CALLS: &str = "subprogram/heidenhain-calls.h";
 const CORRECTED: &str = "subprogram/heidenhain.h";
 /// Coolant, and a return at feed.
 const RETURN: &str = "left-hand/heidenhain.h";
+const FIVE: &str = "apt/nx-five-axes/heidenhain.h";
+const PLANES: &str = "apt/nx-planes/heidenhain.h";
 const SPL_ALONG_Y: &str = "reverse-taper/heidenhain.h";
 
 #[rustfmt::skip]
 pub(super) const FAULTS: &[Fault] = &[
-    (SPL, &[Put("M129", 1, "M128")], &[Word]),
+    (SPL, &[Put("4 PATHS", 1, "1 PATHS")], &[Remark]),
+    (FIVE, &[Drop("M129", 1)], &[Header]),
+    (FIVE, &[Drop("M129", 2)], &[Left]),
+    (FIVE, &[Put("TY+0 TZ+0.8660254", 2, "TZ+0.8660254")], &[Direction]),
+    (PLANES, &[Drop("PLANE RESET STAY", 1)], &[Header]),
+    (PLANES, &[Drop("PLANE RESET STAY", 5)], &[Left]),
+    (PLANES, &[Put("SPA+0 SPB+0 SPC+0", 2, "SPA+0 SPB+90 SPC+0")], &[Upright]),
+    (SPL, &[After("CYCL DEF 7.4 A+0", 1, "CYCL DEF 7.5 C+0")], &[Axis]),
+    (SPL, &[Drop("M127", 1)], &[Header]),
+    (SPL, &[Drop("CYCL DEF 10.1 ROT+0", 1)], &[Header]),
+    (SPL, &[Put("M129", 1, "M128")], &[Word, Left, Direction]),
     (SPL, &[Put("A+0", 1, "A+5")], &[Offset]),
-    (SPL, &[Put("SCL 1", 1, "SCL 2")], &[Word]),
+    (SPL, &[Put("SCL 1", 1, "SCL 2")], &[Word, Header]),
     (SPL, &[Put("K1A-3.02864609E+1", 1, "K1A-30.2864609")], &[Word, Spl]),
     (SPL, &[Put("K3X-0.00002592", 1, "K4X-0.00002592")], &[Word, Spl]),
     (SPL, &[Put("MM", 1, "INCH")], &[Header]),
@@ -131,11 +143,16 @@ pub(super) const FAULTS: &[Fault] = &[
     (RETURN, &[Put("F1033.881", 1, "")], &[]),
     (TURNS, &[Put("IA+34.2423", 1, "IA-34.2423")], &[Turn]),
     (TURNS, &[Put("IA+33.5096", 1, "IA-33.5096")], &[Turn]),
-    (TURNS, &[Put("IA+33.5096", 1, "A+27.9348")], &[Modulo, Turn]),
-    (TURNS, &[Put("IA+33.5096", 1, "A+387.9348")], &[Modulo]),
+    (TURNS, &[Put("IA+33.5096", 1, "A+27.9348")], &[Modulo, Turn, Left]),
+    (TURNS, &[Put("IA+33.5096", 1, "A+387.9348")], &[Modulo, Left]),
     (TURNS, &[Put("IA+34.2423", 1, "A+286.6731")], &[]),
+    (TURNS, &[Put("IA+34.2423", 1, "A+646.6731")], &[Modulo]),
+    // Without it the next place of A turns it all the way back.
+    (TURNS, &[Drop("L M94 A", 1)], &[Left]),
+    (TURNS, &[Drop("L M94 A", 2)], &[Left]),
+    (PLANES, &[Before("L X+20", 1, "M8")], &[Coolant]),
     (TURNS, &[Put("A+74.1469", 1, "A+34.1469")], &[Turn]),
-    (L, &[Put("L A+120 R0 FMAX", 1, "L IA+120 R0 FMAX")], &[Incremental, Restart]),
+    (L, &[Put("L A+120 R0 FMAX", 1, "L IA+120 R0 FMAX")], &[Incremental, Restart, Left]),
     (SPL, &[Put("K2A-1.208595 K1A-3.02864609E+1", 1, "K2A+5.0E+1 K1A-8.1495056E+1")], &[Turn]),
     (SPL, &[Limit('X', [0.0, 30.0, 210.0])], &[]),
     (SPL, &[Limit('X', [0.1, 30.0, 210.0])], &[Range]),

@@ -3,8 +3,9 @@
 use super::Edit::{After, Before, Down, Drop, Limit, Put, Wraps};
 use super::Fault;
 use crate::machine::Rule::{
-    Call, Clear, Coolant, End, Feed, Header, Home, Incremental, Index, Modulo, Nurbs, Offset, Order,
-    Parameter, Position, Range, Restart, Speed, Spindle, Tool, Turn, Word,
+    Axis, Call, Clear, Coolant, Direction, End, Feed, Header, Home, Incremental, Index, Left, Length, Modulo,
+    Nurbs, Offset, Order, Parameter, Position, Range, Remark, Restart, Speed, Spindle, Tool, Turn, Upright,
+    Word,
 };
 
 /// One path of four, each a G06.2 curve.
@@ -20,12 +21,18 @@ const CORRECTED: &str = "subprogram/mazak.eia";
 const RETURN: &str = "left-hand/mazak.eia";
 const G1_ALONG_Y: &str = "reverse-taper/mazak.eia";
 
+/// A park place is stated.
+const PARKED: &str = "conical-mill/mazak-park.eia";
+const FIVE: &str = "apt/nx-five-axes/mazak.eia";
+const PLANES: &str = "apt/nx-planes/mazak.eia";
+
 /// Lines in inverse time.
 const TIMED: &str = "conical-mill/mazak-inverse.eia";
 
 #[rustfmt::skip]
 pub(super) const FAULTS: &[Fault] = &[
-    (NURBS, &[Put("G69", 1, "G68")], &[Word]),
+    (NURBS, &[Put("4 PATHS", 1, "1 PATHS")], &[Remark]),
+    (NURBS, &[Put("G69", 1, "G68")], &[Word, Left]),
     (NURBS, &[Put("X0.", 3, "X0")], &[Word]),
     (NURBS, &[Put("F200.", 2, "F200")], &[Word, Restart]),
     (G1, &[Put("X30.", 1, "X30. X31.")], &[Word]),
@@ -38,9 +45,10 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Put("G40", 1, "G42")], &[Header]),
     (NURBS, &[Put("G90", 1, "")], &[Header]),
     (NURBS, &[Put("G94", 1, "")], &[Header]),
-    (NURBS, &[Put("G94", 1, "G93")], &[Header, Feed]),
+    (NURBS, &[Put("G94", 1, "G93")], &[Header, Feed, Left]),
     (NURBS, &[Put("G90", 1, "G91")], &[Header, Incremental]),
-    (NURBS, &[After("G54", 1, "G91")], &[Incremental]),
+    (NURBS, &[After("G54", 1, "G91")], &[Header, Incremental]),
+    (NURBS, &[After("G54", 1, "G91\nG90")], &[Incremental]),
     (NURBS, &[Drop("Y0.", 2)], &[Clear]),
     (NURBS, &[Drop("A0.", 2)], &[Position]),
     (G1, &[Drop("A0.", 2)], &[Position]),
@@ -57,14 +65,14 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Put("G43 H1", 1, "")], &[Tool]),
     (NURBS, &[Put("H1", 1, "H2")], &[Tool]),
     (NURBS, &[Put("G43 H1", 1, "G43")], &[Word, Tool]),
-    (NURBS, &[Before("G1 Z0. F200.", 2, "G49")], &[Tool]),
+    (NURBS, &[Before("G1 Z0. F200.", 2, "G49")], &[Tool, Length]),
     // After the first move of Z.
-    (G1_ALONG_Y, &[Put("G43 H7", 1, ""), Put("A0.", 2, "G43 H7 A0.")], &[Tool]),
+    (G1_ALONG_Y, &[Put("G43 H7", 1, ""), Put("A0.", 2, "G43 H7 A0.")], &[Tool, Length]),
     (NURBS, &[Put("F200.", 1, "")], &[Feed]),
     (NURBS, &[Put("F200.", 1, "F0.")], &[Feed]),
     (NURBS, &[Put("Y0.", 5, "Y0. A90.")], &[Clear]),
     (NURBS, &[Put("Z50.", 3, "Z5.")], &[Clear]),
-    (NURBS, &[Drop("G0 G43 H1 Z50.", 2), Put("X0.", 5, "G0 G43 H1 X0.")], &[Clear, Restart]),
+    (NURBS, &[Drop("G0 G43 H1 Z50.", 2), Put("X0.", 5, "G0 G43 H1 X0.")], &[Clear, Restart, Length]),
     (G1_ALONG_Y, &[Put("G0 Y30.", 1, "G0"), Put("X0.", 2, "Y30. X0.")], &[Clear, Restart]),
     (G1, &[Down("A120.", 1)], &[Restart, Index]),
     (NURBS, &[Drop("G0 Z50.", 1)], &[Order]),
@@ -94,7 +102,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Drop("M30", 1)], &[End]),
     (NURBS, &[Drop("%", 2)], &[End]),
     (NURBS, &[Drop("%", 1)], &[End]),
-    (NURBS, &[Drop("G0 Z50.", 4)], &[Tool, Order]),
+    (NURBS, &[Drop("G0 Z50.", 4)], &[Order]),
     (NURBS, &[Before("G0 Z50.", 4, "M5")], &[End]),
     (NURBS, &[After("M30", 1, "G0 Z50.")], &[Tool, End]),
     (NURBS, &[Drop("G0 G53 Z0.", 1)], &[Clear, Home]),
@@ -102,9 +110,24 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[Put("G53 Z0.", 1, "G53 Z10.")], &[Clear, Home]),
     (NURBS, &[Put("G53 Z0.", 2, "G53 X0.")], &[Home]),
     (NURBS, &[Put("G0 G53 Z0.", 2, "G1 G53 Z0.")], &[Home]),
-    (NURBS, &[Put("G0 G53 Z0.", 2, "G0 Z0.")], &[Tool, Clear, End, Home]),
-    (NURBS, &[Drop("G49", 3)], &[Home]),
-    (NURBS, &[Put("G40 G49", 1, "G40"), Drop("G49", 1)], &[Home]),
+    (NURBS, &[Put("G0 G53 Z0.", 2, "G0 Z0.")], &[Clear, End, Home]),
+    // A length ends where Z may move by it, or begins where it may.
+    (NURBS, &[Put("G40", 1, "G40 G49")], &[Length]),
+    (NURBS, &[After("T1 M6", 1, "G49")], &[Length]),
+    (NURBS, &[Before("M5", 1, "G49")], &[Length]),
+    (NURBS, &[After("T1 M6", 1, "G43 H1")], &[Length]),
+    (PARKED, &[Drop("G0 G53 X-500.", 1)], &[Length]),
+    (PARKED, &[Drop("G0 G53 Y0.", 1)], &[Length]),
+    (PARKED, &[Put("G53 X-500.", 1, "G53 X-400.")], &[End, Home, Length]),
+    (PARKED, &[Down("G0 G53 Y0.", 1)], &[Length]),
+    (FIVE, &[Drop("G0 G53 Y0.", 1)], &[Length]),
+    (FIVE, &[Drop("G49", 1)], &[Left]),
+    (FIVE, &[Put("I-0.5 J0. K0.866025", 2, "I-0.5 K0.866025")], &[Direction]),
+    (PLANES, &[Drop("G69", 1)], &[Header]),
+    (PLANES, &[Drop("G69", 5)], &[Left]),
+    (PLANES, &[Put("I0. J0. K0.", 2, "I0. J90. K0.")], &[Upright]),
+    (PLANES, &[Drop("G0 G53 Z0.", 2)], &[Home]),
+    (NURBS, &[Put("A0.", 1, "A0. C0.")], &[Axis]),
     (NURBS, &[Down("G0 G53 Z0.", 1)], &[Home]),
     (NURBS, &[Drop("G52 X0. Y0. Z0. A0.", 1)], &[Offset]),
     (NURBS, &[Put("G52 X0. Y0. Z0. A0.", 1, "G52 X0. Y0. Z0.")], &[Offset]),
@@ -143,7 +166,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (NURBS, &[After("S3000 M3", 1, "M8")], &[Coolant]),
     (NURBS, &[Drop("M9", 1)], &[]),
     (RETURN, &[Drop("G0 Z40.", 1)], &[Order]),
-    (RETURN, &[Drop("G0 Z40.", 3)], &[Tool, Order]),
+    (RETURN, &[Drop("G0 Z40.", 3)], &[Order]),
     (RETURN, &[Put("G1 X27. F1000.", 1, "G1 X27. Y1.415 F1000.")], &[Order]),
     (RETURN, &[Put("G1 X27. F1000.", 1, "G1 A0. F1000.")], &[Order, Turn]),
     (RETURN, &[Put("G1 X27. F1000.", 1, "G1 Z0. F1000.")], &[Order]),
@@ -170,5 +193,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (TIMED, &[Put("G0 G94 Z50.", 1, "G0 Z50."), Put("G94 Z0. F200.", 2, "Z0. F200.")], &[Restart]),
     (TIMED, &[Limit('A', [-1.0, 430.0, 1319.0])], &[]),
     (TIMED, &[Limit('A', [-1.0, 430.0, 1317.0])], &[Speed]),
-    (NURBS, &[Before("G06.2", 1, "G93")], &[Header, Feed, Restart]),
+    (NURBS, &[Before("G06.2", 1, "G93")], &[Header, Feed, Restart, Left]),
+    (TIMED, &[Put("G0 G94 Z50.", 4, "G0 Z50.")], &[Left]),
+    (PLANES, &[Before("X20.", 1, "M8")], &[Coolant]),
 ];

@@ -3,8 +3,9 @@
 use super::Edit::{After, Before, Down, Drop, Limit, Put, Wraps};
 use super::Fault;
 use crate::machine::Rule::{
-    Call, Clear, Coolant, End, Feed, Header, Home, Incremental, Index, Modulo, Offset, Order, Parameter, Pl,
-    Position, Range, Restart, Speed, Spindle, SplinePath, Tool, Turn, Upath, Word,
+    Axis, Call, Clear, Coolant, Direction, End, Feed, Header, Home, Incremental, Index, Left, Length, Modulo,
+    Offset, Order, Parameter, Pl, Position, Range, Remark, Restart, Speed, Spindle, SplinePath, Tool, Turn,
+    Upath, Upright, Word,
 };
 
 /// One path of four, each a POLY block of fifth degree.
@@ -24,11 +25,23 @@ const CORRECTED: &str = "subprogram/sinumerik.mpf";
 const RETURN: &str = "left-hand/sinumerik.mpf";
 /// The same without blanks, and A counts the other way.
 const TERSE: &str = "left-hand/sinumerik-terse.mpf";
+const FIVE: &str = "apt/nx-five-axes/sinumerik.mpf";
+const PLANES: &str = "apt/nx-planes/sinumerik.mpf";
 const LINE: &str = "straight-flute/sinumerik.mpf";
 
 #[rustfmt::skip]
 pub(super) const FAULTS: &[Fault] = &[
-    (POLY, &[Put("TRAFOOF", 1, "TRAORI")], &[Word]),
+    (POLY, &[Put("4 PATHS", 1, "1 PATHS")], &[Remark]),
+    (FIVE, &[Drop("TRAFOOF", 1)], &[Header]),
+    (FIVE, &[Drop("TRAFOOF", 2)], &[Left]),
+    (FIVE, &[Put("B3=0 C3=0.866025", 2, "C3=0.866025")], &[Direction]),
+    (PLANES, &[Drop("CYCLE800()", 5)], &[Left]),
+    (PLANES, &[Put("0,57,0,0,0,0,0,0", 2, "0,57,0,0,0,0,90,0")], &[Upright]),
+    (PLANES, &[Before("X20", 1, "M8")], &[Coolant]),
+    (POLY, &[After("M6", 1, "D0")], &[Length]),
+    (POLY, &[Put("FGROUP(X,Y,Z)", 1, "FGROUP(X,Y,Z,B)")], &[Axis]),
+    (POLY, &[Drop("MCALL", 1)], &[Header]),
+    (POLY, &[Put("TRAFOOF", 1, "TRAORI")], &[Word, Left, Direction]),
     (POLY, &[Put("TRANS", 1, "TRANS X5")], &[Offset]),
     (POLY, &[Put("X0", 2, "X0 X1")], &[Word]),
     (POLY, &[Put("Y0", 2, "Y")], &[Word]),
@@ -43,9 +56,9 @@ pub(super) const FAULTS: &[Fault] = &[
     (POLY, &[Put("G710", 1, "G71")], &[Header]),
     (POLY, &[Put("G90", 1, "")], &[Header]),
     (POLY, &[Put("G94", 1, "")], &[Header]),
-    (POLY, &[Put("G94", 1, "G95")], &[Header]),
+    (POLY, &[Put("G94", 1, "G95")], &[Header, Left]),
     (POLY, &[Put("G90", 1, "G91")], &[Header, Incremental]),
-    (POLY, &[Before("UPATH", 2, "G91")], &[Incremental]),
+    (POLY, &[Before("UPATH", 2, "G91")], &[Header, Incremental]),
     (POLY, &[Put("X0", 3, "X=IC(0)")], &[Incremental, Restart]),
     (POLY, &[Drop("Y0", 1)], &[Clear]),
     (POLY, &[Drop("A0", 1)], &[Position]),
@@ -61,7 +74,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (POLY, &[Drop("T1", 1)], &[Tool]),
     (POLY, &[Drop("M6", 1)], &[Tool]),
     (POLY, &[Drop("D1", 2)], &[Tool]),
-    (POLY, &[Put("D1", 2, "D0")], &[Tool]),
+    (POLY, &[Put("D1", 2, "D0")], &[Tool, Length]),
     (POLY, &[Drop("D1", 2), After("G0 Z50", 1, "D1")], &[Tool, Restart]),
     (POLY, &[Put("Z0 F200", 1, "Z0")], &[Feed]),
     (POLY, &[Put("Z0 F200", 1, "Z0 F0")], &[Feed]),
@@ -106,7 +119,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (BSPLINE, &[Put("SD=3", 2, "")], &[Restart]),
     (CSPLINE, &[Put("BAUTO", 2, "")], &[Restart]),
     (CSPLINE, &[Put("EAUTO", 3, "")], &[Restart]),
-    (POLY, &[Drop("FGROUP(X,Y,Z)", 1), After("G0 Z50", 1, "FGROUP(X,Y,Z)")], &[Restart]),
+    (POLY, &[Drop("FGROUP(X,Y,Z)", 1), After("G0 Z50", 1, "FGROUP(X,Y,Z)")], &[Header, Restart]),
     (POLY, &[Drop("M5", 1)], &[End]),
     (POLY, &[Drop("M30", 1)], &[End]),
     (POLY, &[Drop("G0 Z50", 8)], &[Tool, Order]),
@@ -119,9 +132,9 @@ pub(super) const FAULTS: &[Fault] = &[
     (POLY, &[Put("SUPA Z0", 1, "SUPA Z10")], &[Clear, Home]),
     (POLY, &[Put("SUPA Z0", 2, "SUPA X0")], &[Home]),
     (POLY, &[Put("G0 SUPA", 2, "G1 SUPA")], &[Home]),
-    (POLY, &[Put("G0 SUPA Z0 D0", 2, "G0 Z0 D0")], &[Tool, Clear, End, Home]),
+    (POLY, &[Put("G0 SUPA Z0 D0", 2, "G0 Z0 D0")], &[Tool, Clear, End, Home, Length]),
     (POLY, &[Down("M6", 1), Put("D1", 2, "G0 SUPA Z0 D0\nD1"), Drop("G0 SUPA Z0 D0", 1)], &[]),
-    (POLY, &[Drop("TRANS", 1)], &[Offset]),
+    (POLY, &[Drop("TRANS", 1)], &[Header, Offset]),
     (MODULO, &[Drop("TRANS A0", 1)], &[Offset]),
     (MODULO, &[Drop("TRANS A88", 1)], &[Offset, Index]),
     (MODULO, &[Drop("TRANS A180", 1)], &[Restart, Offset, Index]),
@@ -142,6 +155,7 @@ pub(super) const FAULTS: &[Fault] = &[
     (CALLS, &[Put("CALL BLOCK FLUTE1 TO FLUTE1_END", 2, "CALL BLOCK FLUTE4 TO FLUTE1_END")], &[Order, Call]),
     (CALLS, &[Put("CALL BLOCK FLUTE1 TO FLUTE1_END", 2, "CALL BLOCK FLUTE1 TO FLUTE2_END")], &[Order, Call]),
     (CALLS, &[Put("CALL BLOCK FLUTE2 TO FLUTE2_END", 1, "CALL BLOCK FLUTE1 TO FLUTE1_END")], &[Index]),
+    (CALLS, &[Put("CALL BLOCK FLUTE2 TO FLUTE2_END", 1, "REPEAT FLUTE2 FLUTE2_END")], &[Word, Order]),
     (CALLS, &[Put("FLUTE3:", 1, "FLUTE4:")], &[Order, Call]),
     (CALLS, &[Put("FLUTE3:", 1, "FLUTE1:")], &[Order, Call]),
     (CALLS, &[Drop("FLUTE1_END:", 1)], &[Order, Call]),

@@ -5,21 +5,42 @@ use std::collections::BTreeMap;
 
 pub(super) fn read(text: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
-    let mut open: Option<(usize, String)> = None;
-    for (at, line) in text.lines().enumerate() {
-        let (start, mut whole) = open.take().unwrap_or((at + 1, String::new()));
-        match line.trim_end().strip_suffix('~') {
-            Some(part) => {
-                whole.push_str(part);
-                open = Some((start, whole));
-            }
-            None => blocks.push(klartext(start, &(whole + line))),
-        }
+    let mut lines = joined(text);
+    for (line, text) in &mut lines {
+        blocks.push(klartext(line, &text));
     }
-    if let Some((line, text)) = open {
+    if let Some((line, text)) = lines.open {
         blocks.push(Block { line, faults: vec![text], ..Block::default() });
     }
     blocks
+}
+
+/// The lines of a text with what goes on in the next; what goes on nowhere is left.
+pub(in super::super) fn joined(text: &str) -> Joined<'_> {
+    Joined { lines: text.lines().enumerate(), open: None }
+}
+
+pub(in super::super) struct Joined<'t> {
+    lines: std::iter::Enumerate<std::str::Lines<'t>>,
+    open: Option<(usize, String)>,
+}
+
+impl Iterator for Joined<'_> {
+    type Item = (usize, String);
+
+    fn next(&mut self) -> Option<(usize, String)> {
+        for (at, line) in self.lines.by_ref() {
+            let (start, mut whole) = self.open.take().unwrap_or((at + 1, String::new()));
+            match line.trim_end().strip_suffix('~') {
+                Some(part) => {
+                    whole.push_str(part);
+                    self.open = Some((start, whole));
+                }
+                None => return Some((start, whole + line)),
+            }
+        }
+        None
+    }
 }
 
 /// Lines that end what another program may have left, and leave nothing themselves.

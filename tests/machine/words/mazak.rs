@@ -64,7 +64,7 @@ fn block(at: usize, text: &str) -> Block {
     block
 }
 
-fn words(code: &str) -> Vec<&str> {
+pub(in super::super) fn words(code: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let mut rest = code;
     while let Some(address) = rest.chars().next() {

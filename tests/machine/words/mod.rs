@@ -4,6 +4,9 @@ mod heidenhain;
 mod mazak;
 mod sinumerik;
 
+pub(super) use heidenhain::joined as heidenhain_lines;
+pub(super) use mazak::words as mazak_words;
+pub(super) use sinumerik::words as sinumerik_words;
 use std::collections::BTreeMap;
 
 /// How a program is written.

@@ -40,7 +40,7 @@ fn block(line: usize, text: &str) -> Block {
 
 /// The words, where blanks may be left out behind a number or a bracket: an address of one letter with its number, or a
 /// name with what is assigned to it or stands in its brackets.
-fn words(code: &str) -> Vec<&str> {
+pub(in super::super) fn words(code: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let mut rest = code.trim();
     while let Some(first) = rest.chars().next() {

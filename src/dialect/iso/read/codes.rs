@@ -73,7 +73,10 @@ impl Reader<'_> {
                 let message = "G49 ends leading the tip, with the lines of the machine file";
                 self.error("tip-control", message, range);
             }
-            490 if self.offset_tool.is_some() => {
+            // Where it may move Z, it does so while the next call of the length is due, too.
+            490 if self.offset_tool.is_some()
+                || (self.offset_due.is_some() && self.assembler.machine.frame.length_end_moves) =>
+            {
                 let message = "G49 ends the length of the tool, with the lines of the machine file";
                 self.error("tool-offset", message, range);
             }

@@ -3,7 +3,7 @@
 use super::{Block, Motion, Reader};
 use crate::diagnostic::Diagnostic;
 use crate::dialect::arc;
-use crate::dialect::iso::Offset;
+use crate::dialect::iso::{Offset, register};
 use crate::geom::arc::Plane;
 use crate::ir::ToolCall;
 use crate::machine::template::Template;
@@ -11,20 +11,20 @@ use std::ops::Range;
 
 impl Reader<'_> {
     /// Where a fixed line calls a tool, the offset that was taken out of the machine's lines must follow.
-    pub(super) fn tool_line(&mut self, body: &str, offset: &Offset<'_>, range: Range<usize>) {
+    pub(super) fn tool_line(&mut self, body: &str, offset: &Offset, range: Range<usize>) {
         let machine = self.assembler.machine;
         let frame = &machine.frame;
         let is = |lines: &[Template]| lines.first().is_some_and(|line| line.matched(body).is_some());
-        for (lines, due) in [(&frame.tool, offset.tool), (&frame.tool_spindle, offset.tool_spindle)] {
+        for (lines, due) in [(&frame.tool, &offset.tool), (&frame.tool_spindle, &offset.tool_spindle)] {
             match (is(lines), due) {
                 (false, _) => {}
-                (true, true) => {
+                (true, Some(called)) => {
                     self.offset_due = self.assembler.tool().map(ToolCall::register);
-                    self.offset_free = offset.free;
+                    self.offset_call = Some(called.clone());
                     self.offset_tool = None;
                 }
                 // The length comes with the tool.
-                (true, false) => self.takes_length(range.clone()),
+                (true, None) => self.takes_length(range.clone()),
             }
         }
         if is(&frame.tip_control) {
@@ -32,10 +32,12 @@ impl Reader<'_> {
         }
     }
 
-    /// A retraction in machine coordinates may end the length of the tool, so that it is called again before the next move of Z.
+    /// A retraction in machine coordinates may end the length of the tool, and other lines do, so that it is called again before
+    /// the next move of Z.
     pub(super) fn home_line(&mut self, body: &str) {
-        let first = self.assembler.machine.frame.home.first();
-        if first.is_some_and(|template| template.matched(body).is_some()) && !self.assembler.leads_tip() {
+        let frame = &self.assembler.machine.frame;
+        let mut firsts = frame.home.first().into_iter().chain(frame.length_end.first());
+        if firsts.any(|template| template.matched(body).is_some()) && !self.assembler.leads_tip() {
             self.offset_due = self.offset_due.or(self.offset_tool.take());
         }
     }
@@ -81,9 +83,14 @@ impl Reader<'_> {
         // Due after a tool call; after that each section may call it again.
         match (offset, number, self.offset_due.or(self.offset_again)) {
             (Some(_), Some((h, range)), Some(due)) => {
-                let register = h.units(0).and_then(|h| u32::try_from(h).ok());
+                // `2{register}` filled in is H212 for register 12.
+                let call = self.offset_call.clone().unwrap_or(Template("{register}".to_owned()));
+                let written = h.units(0).map(|h| h.to_string()).unwrap_or_default();
+                let values = call.matched(&written).unwrap_or_default();
+                let register = values.first().and_then(|(_, value)| value.parse::<u32>().ok());
+                let free = call.variables().any(|name| name == "register");
                 let takes = match register {
-                    Some(register) if register == due || self.offset_free => {
+                    Some(register) if register == due || free => {
                         self.assembler.takes_register(register, self.assembler.span(range.clone()))
                     }
                     Some(_) | None => false,
@@ -111,7 +118,9 @@ impl Reader<'_> {
                 if moves {
                     self.offset_due = None;
                     let call = self.assembler.tool().unwrap_or(ToolCall::own(h));
-                    let message = format!("tool {} moves before its `G43 H{h}`", call.number);
+                    let template = self.offset_call.clone().unwrap_or(Template("{register}".to_owned()));
+                    let register = register(&template, call);
+                    let message = format!("tool {} moves before its `G43 H{register}`", call.number);
                     self.error("tool-offset-missing", message, whole);
                 }
             }
