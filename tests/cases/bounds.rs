@@ -258,6 +258,9 @@ fn run_of_a_job(random: &mut Random, digits: u8, with_radius: bool) -> Run {
     Run { asked: job_points(&text), written, radius, stated: output.report.expect("a proof").deviation }
 }
 
+/// Where the tool is clear of the work, for controls on which ending tool centre point control may move it.
+const PARK: &str = "[axis.X]\nhome = -500.0\n[axis.Y]\nhome = 0.0\n";
+
 /// CL data of five axes, in inches.
 fn run_of_five_axes(random: &mut Random, digits: u8) -> Run {
     let mut text = "PARTNO/RUN\nUNITS/INCHES\nMULTAX/ON\nLOADTL/1\nSPINDL/8000,RPM,CLW\nRAPID\n".to_owned();
@@ -278,7 +281,7 @@ fn run_of_five_axes(random: &mut Random, digits: u8) -> Run {
     text.push_str("FINI\n");
     let places = digits.max(3);
     let keys = format!(
-        "[digits]\nlinear = {digits}\nrotary = {digits}\n[orientation]\ntolerance = 1.0\ndigits = {places}\n"
+        "[digits]\nlinear = {digits}\nrotary = {digits}\n[orientation]\ntolerance = 1.0\ndigits = {places}\n{PARK}"
     );
     let machine = machine(DIALECTS[random.below(3)], &keys);
     let options = Options { tolerance: Some(0.2), ..Options::default() };
