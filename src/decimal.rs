@@ -359,6 +359,19 @@ fn significant(number: &[u8]) -> Option<(u64, usize)> {
     })
 }
 
+/// A bound in three figures, none of which is below it.
+pub fn at_most(bound: f64) -> String {
+    let text = format!("{bound:.2e}");
+    if text.parse().is_ok_and(|told: f64| bound <= told) || !bound.is_finite() {
+        return text;
+    }
+    let (figures, power) = text.split_once('e').unwrap_or((&text, "0"));
+    let hundredths = figures.replace('.', "").parse::<u32>().unwrap_or_default() + 1;
+    let power: i32 = power.parse().unwrap_or_default();
+    let (hundredths, power) = if hundredths == 1000 { (100, power + 1) } else { (hundredths, power) };
+    format!("{}.{:02}e{power}", hundredths / 100, hundredths % 100)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -368,6 +381,27 @@ mod tests {
         let mut out = Vec::new();
         write_units(&mut out, round_units(x, digits).unwrap(), digits, Spelling::PLAIN);
         String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn what_is_told_of_a_bound_is_not_below_it() {
+        let told = [
+            (4.123_106e-3, "4.13e-3"),
+            (4.12e-3, "4.12e-3"),
+            (9.991e-4, "1.00e-3"),
+            (1.0, "1.00e0"),
+            (0.0, "0.00e0"),
+            (123.4, "1.24e2"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (bound, text) in told {
+            assert_eq!(at_most(bound), text);
+        }
+        let mut bound = 1.0e-12;
+        while bound < 1.0e3 {
+            assert!(bound <= at_most(bound).parse::<f64>().unwrap(), "{bound}");
+            bound *= 1.003_7;
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a compilation tells beside the program.
 
+use crate::decimal::at_most;
 use crate::geom::follow::Map;
 use crate::ir::{Intent, Step};
 use crate::machine::Machine;
@@ -228,19 +229,21 @@ impl Summary {
         match (self.deviation_mm, self.deviation_rad) {
             (Some(mm), Some(rad)) => {
                 let where_to = if self.cutter.is_some() {
-                    format!(" at the surface, {rad:.2e} rad in A")
+                    format!(" at the surface, {} rad in A", at_most(rad))
                 } else if self.setup.tilt.is_some() {
-                    format!(" at the tip, {:.2e} degrees of the tool axis", rad * DEGREES)
+                    format!(" at the tip, {} degrees of the tool axis", at_most(rad * DEGREES))
                 } else if 0.0 < rad {
-                    format!(", {rad:.2e} rad in rotary axes")
+                    format!(", {} rad in rotary axes", at_most(rad))
                 } else {
                     String::new()
                 };
                 let map = self.map.map_or(String::new(), |map| format!(" {map}"));
                 let _ = writeln!(
                     text,
-                    "  deviation  {mm:.2e} mm{where_to}, {}{map} (tolerance {} mm)",
-                    self.status, self.tolerance
+                    "  deviation  {} mm{where_to}, {}{map} (tolerance {} mm)",
+                    at_most(mm),
+                    self.status,
+                    self.tolerance
                 );
             }
             _ => {
@@ -259,8 +262,9 @@ impl Summary {
             );
             let _ = writeln!(
                 text,
-                "             splines within {:.2e} mm of the lines, points within {:.2e} mm of the splines",
-                fit.spline_from_lines_mm, fit.points_from_spline_mm
+                "             splines within {} mm of the lines, points within {} mm of the splines",
+                at_most(fit.spline_from_lines_mm),
+                at_most(fit.points_from_spline_mm)
             );
             let _ = writeln!(
                 text,
@@ -271,7 +275,12 @@ impl Summary {
         if let (Some(mm), Some(rad)) = (self.steps_from_ideal_mm, self.steps_from_ideal_rad) {
             let dl =
                 self.cutter.as_ref().and_then(|c| c.dl).map_or(String::new(), |dl| format!(" at dl = {dl}"));
-            let _ = writeln!(text, "  steps      {mm:.2e} mm, {rad:.2e} rad from the ideal curve{dl}");
+            let _ = writeln!(
+                text,
+                "  steps      {} mm, {} rad from the ideal curve{dl}",
+                at_most(mm),
+                at_most(rad)
+            );
         }
         if let Some(cutter) = &self.cutter {
             let range = |[a, b]: [f64; 2], digits: usize| {

@@ -36,7 +36,7 @@ pub(super) struct LawArguments {
     #[arg(long, value_enum, default_value_t = MethodName::Secant, value_name = "METHOD")]
     method: MethodName,
     /// The relative feed error below which a point is taken
-    #[arg(long, default_value = "1e-8", value_name = "RELATIVE", value_parser = positive)]
+    #[arg(long, default_value = "1e-8", value_name = "RELATIVE", value_parser = share)]
     feed_error: f64,
 }
 
@@ -65,6 +65,14 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if 0.0 < x && x.is_finite() => Ok(x),
         _ => Err("a number greater than zero is needed".to_owned()),
+    }
+}
+
+/// A part of a whole: with an error of all of it a point may stay where it is, and no path ends.
+fn share(text: &str) -> Result<f64, String> {
+    match positive(text) {
+        Ok(x) if x < 1.0 => Ok(x),
+        _ => Err("a number greater than zero and below one is needed".to_owned()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Origin;
 use super::walk::{Found, counted};
+use crate::decimal::at_most;
 use crate::source::{LineColumn, Sources, Span};
 use crate::units::DEGREES;
 use serde::Serialize;
@@ -139,9 +140,9 @@ impl Figures {
         );
         if let (Some(mm), Some(rad)) = (self.deviation_mm, self.deviation_rad) {
             let angle = if self.direction {
-                format!(" at the tip, {:.2e} degrees of the tool axis", rad * DEGREES)
+                format!(" at the tip, {} degrees of the tool axis", at_most(rad * DEGREES))
             } else if 0.0 < rad {
-                format!(", {rad:.2e} rad in rotary axes")
+                format!(", {} rad in rotary axes", at_most(rad))
             } else {
                 String::new()
             };
@@ -151,8 +152,10 @@ impl Figures {
             };
             let _ = writeln!(
                 text,
-                "  deviation  {mm:.2e} mm{angle}, {} (tolerance {} mm){farthest}",
-                self.status, self.tolerance
+                "  deviation  {} mm{angle}, {} (tolerance {} mm){farthest}",
+                at_most(mm),
+                self.status,
+                self.tolerance
             );
         }
         if let Some(planes) = self.planes_deg {

@@ -281,7 +281,15 @@ impl Cursor<'_> {
             return Err(self.differs("less-than-asked", "a path is missing here".to_owned()));
         }
         // Where no block ends at the end, all of them are measured, and are found too far away.
-        let count = best.map_or(path.len(), |(_, count)| count);
+        let mut count = best.map_or(path.len(), |(_, count)| count);
+        // A last step that rounding made a rest ends where the block before it does, and no other curve is behind it.
+        let left = match written {
+            Written::Lines(points) => points.count() - self.within,
+            Written::Polynomial(_) | Written::Nurbs(_) | Written::Arc(_) | Written::Through(..) => 0,
+        };
+        if count + 1 == left && path.get(count).is_some_and(|last| last.start() == last.end()) {
+            count = left;
+        }
         path.truncate(count);
         Ok((path, count))
     }

@@ -3,7 +3,7 @@
 //! Each remark of an intent starts a section: a flute, a pass, an operation, a tool. An operator looks for it and starts there,
 //! so that one too many is as wrong as a move. Their text, order and place are those that were asked: each stands right
 //! before the step that it was asked before, and nowhere else is there a remark that could be taken for one of them, the same words with
-//! whatever numbers. All other remarks are free.
+//! whatever numbers, or for one of another program: `FLUTE 1 OF 4`. All other remarks are free.
 
 use super::Cursor;
 use crate::diagnostic::Diagnostics;
@@ -11,6 +11,16 @@ use crate::ir::{Intent, Located, Step};
 use crate::machine::Machine;
 use crate::machine::remark::wrapped;
 use std::collections::BTreeSet;
+
+/// What remarks begin with that programs are restarted at, whether this one has such or not.
+const RESTARTS: [&str; 8] =
+    ["FLUTE #", "ROUGH #", "FINISH", "SPARK-OUT", "PASS #", "PATH #", "TOOL #", "OPERATION #"];
+
+/// Whether an operator could take a remark for a place to start at, by its gist.
+fn is_restart(gist: &str) -> bool {
+    let ends = |rest: &str| rest.chars().next().is_none_or(|c| !c.is_alphanumeric());
+    RESTARTS.iter().any(|words| gist.strip_prefix(words).is_some_and(ends))
+}
 
 /// The remarks that start a section, as they are told from others.
 pub(super) struct Sections(BTreeSet<String>);
@@ -66,7 +76,8 @@ impl<'p> Cursor<'p> {
 
     /// Passes a remark that starts no section.
     fn pass_remark(&mut self, read: &str) -> Result<(), Diagnostics> {
-        if self.sections.0.contains(&gist(read)) {
+        let gist = gist(read);
+        if self.sections.0.contains(&gist) || is_restart(&gist) {
             let message = format!("no section starts with the remark `{read}` here");
             return Err(self.differs("section-differs", message));
         }
@@ -111,5 +122,17 @@ mod tests {
         assert_eq!(gist("flute  12 of 6, A 0.5"), gist("FLUTE 2 OF 6, A 97.25"));
         assert_ne!(gist("FLUTE 2 OF 6"), gist("PASS 2 OF 6"));
         assert_ne!(gist("FLUTE 2"), gist("SEE FLUTE 2"));
+    }
+
+    #[test]
+    fn remarks_of_other_programs_may_be_taken_for_a_start() {
+        for remark in ["FLUTE 1 OF 4, A 0", "flute 3", "FINISH", "SPARK-OUT", "TOOL 5", "PASS 2: ROUGH"] {
+            assert!(is_restart(&gist(remark)), "{remark}");
+        }
+        for remark in
+            ["FLUTES 4", "FINISHED 12:00", "TOOL AXIS: 0 TO 5", "SEE FLUTE 2", "TOOLS", "PATH LENGTH"]
+        {
+            assert!(!is_restart(&gist(remark)), "{remark}");
+        }
     }
 }

@@ -82,7 +82,7 @@ fn an_end_that_was_rounded_makes_no_other_turn() {
     }
     // An arc shorter than the control's decimals is a line there, not a turn.
     let text = format!(
-        "PARTNO TINY\n{START}GOTO/10,0,0\nCIRCLE/5,0,0,0,0,1,5\nGOTO/9.99999999,0.00003,0\nGOTO/0,9,0\nFINI\n"
+        "PARTNO TINY\n{START}GOTO/10,0,0\nCIRCLE/9.97,0,0,0,0,1,0.03\nGOTO/9.99999994,0.00006,0\nGOTO/0,9,0\nFINI\n"
     );
     for dialect in splinepost::dialect::DIALECTS {
         let machine = crate::support::five(dialect.name);

@@ -523,3 +523,66 @@ fn a_cycle_taken_up_again_may_change_an_argument() {
         home Z",
     );
 }
+
+/// An end one in the fifth decimal beside the start is that of a whole turn, wherever the circle lies; farther away it may be
+/// either, however it is spelled.
+#[test]
+fn an_end_beside_its_start_is_a_turn_or_asked() {
+    let file = |y: &str, end: &str| {
+        format!(
+            "TOOL PATH/A,TOOL,B\nUNITS/MM\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/10.,{y},20.\nFEDRAT/MMPM,100\n\
+             GOTO/10.,{y},0.\nCIRCLE/0.,{y},0.,0,0,1,10.,0.06,0.5,12,0\nGOTO/{end},0.\nGOTO/10.,{y},20.\n"
+        )
+    };
+    for (y, end) in [
+        ("31.90445", "10.,31.90444"),
+        ("1.00001", "10.,1.00000"),
+        ("0.00000", "10.,-0.00001"),
+        ("99999.99999", "10.,99999.99998"),
+        ("1.00000", "10.,1.00000"),
+    ] {
+        let [(turns, rise)] = arcs(&file(y, end), How::default())[..] else { panic!("one arc: {y}") };
+        // 1e-5 mm of 10 mm are 1.6e-7 turns.
+        assert!((turns - 1.0).abs() < 2.0e-7 && rise == 0.0, "{y}: {turns}");
+    }
+    for end in ["10.,-0.0001", "10.,0.0001", "10.,-0.001"] {
+        let text = file("0.", end);
+        if arcs_or(&text).is_some_and(|turns| 0.99 < turns) {
+            // On the far side of the start it is almost a turn as it stands.
+            continue;
+        }
+        refused(&text, How::default(), "arc-turn");
+    }
+}
+
+/// The turns of the only arc, where the file is read.
+fn arcs_or(text: &str) -> Option<f64> {
+    let machine = machines().into_iter().next()?;
+    compiled(text, How::default(), &machine).ok()?;
+    arcs(text, How::default()).first().map(|(turns, _)| *turns)
+}
+
+/// NX counts below its point as negative, others as positive; the other sign would be above it.
+#[test]
+fn a_depth_above_the_point_is_refused() {
+    let nx = "TOOL PATH/A,TOOL,B\nUNITS/MM\nLOAD/TOOL,1\nSPINDL/RPM,100,CLW\nRAPID\nGOTO/0,0,20\n\
+              CYCLE/DRILL,RAPTO,3,FEDTO,-5,RTRCTO,AUTO,MMPM,50\nGOTO/0,0,0\nCYCLE/OFF\n";
+    let iso = "UNITS/MM\nLOADTL/1\nSPINDL/100,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,20\n\
+               CYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/0,0,0\nCYCLE/OFF\nFINI\n";
+    let deep = |text: &str, how: How<'_>| {
+        let machine = machines().into_iter().next().expect("a machine");
+        let output = compiled(text, how, &machine).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+        let events = events(&output, &machine);
+        events.iter().filter_map(|event| point(event)).map(|p| p[2]).fold(f64::INFINITY, f64::min)
+    };
+    assert_eq!(deep(nx, How::default()).to_bits(), (-5.0f64).to_bits());
+    assert_eq!(deep(iso, How::default()).to_bits(), (-5.0f64).to_bits());
+    let (up, down) = (nx.replace("FEDTO,-5", "FEDTO,5"), iso.replace("DEPTH,5", "FEDTO,-5"));
+    for (text, sign) in [(&up, "positive"), (&down, "negative")] {
+        let hints = refused(text, How::default(), "cycle-depth");
+        let key = format!("fedto = \"{sign}\"");
+        assert!(hints.contains(&key), "{hints}");
+        assert_eq!(deep(text, words(&key)).to_bits(), (-5.0f64).to_bits(), "{key}");
+    }
+    refused(&iso.replace("DEPTH,5", "DEPTH,-5"), How::default(), "cycle-depth");
+}

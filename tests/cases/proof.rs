@@ -252,3 +252,23 @@ fn a_control_that_turns_evenly_passes_the_pole() {
         assert!(deviation.mm <= output.tolerance, "{built_in}: {deviation:?}");
     }
 }
+
+#[test]
+fn a_last_step_below_the_decimals_is_no_move_more() {
+    // The last of two legs is 2.8e-5 mm, less than half a unit of four decimals on either axis.
+    let text = "name = \"STEP\"\n[process]\nfeed = 100.0\nretract = { axis = \"Z\", to = 50.0 }\n[[curve]]\nkind = \"nurbs\"\n\
+                axes = [\"X\", \"Y\"]\nat = { Z = 0.0 }\ndegree = 1\nknots = [0, 0, 1.5, 2.3, 2.3]\n\
+                points = [[0.0, 0.0], [0.0, 7.3], [0.00002, 7.30002]]\n";
+    for built_in in ["sinumerik", "heidenhain", "mazak"] {
+        for digits in [2, 4] {
+            let keys = format!("extends = \"{built_in}\"\nname = \"few\"\n[digits]\nlinear = {digits}\n");
+            let machine = machine(&keys);
+            let tolerance = Some(if digits == 2 { 0.02 } else { 0.001 });
+            let options =
+                Options { motion: machine.dialect.motion("linear"), tolerance, ..Options::default() };
+            let output = super::compiled(text, &machine, &options)
+                .unwrap_or_else(|e| panic!("{built_in} {digits}: {e:?}"));
+            assert_eq!(output.report.expect("a proof").path_blocks, 2, "{built_in}: {}", output.text);
+        }
+    }
+}

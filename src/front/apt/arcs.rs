@@ -19,8 +19,12 @@ const MISFIT_WARNED: f64 = 0.002;
 /// Above this they are none, mm: what controls accept.
 pub(super) const MISFIT_REFUSED: f64 = 0.01;
 
-/// A chord shorter than this is that of a full circle whose end was rounded, mm.
-pub(super) const FULL_CHORD: f64 = 1.0e-5;
+/// A chord shorter than this is that of a full circle whose end was rounded, mm: one in the fifth decimal, and what the difference
+/// of two coordinates up to 100 m is off by in floats, 3e-11 mm.
+pub(super) const FULL_CHORD: f64 = 1.0e-5 + 1.0e-10;
+
+/// An arc that is shorter than three decimals tell and turns by less than this, radians, may as well be a whole turn.
+const UNCLEAR_TURN: f64 = 1.0e-3;
 
 /// How far an axis may be from X, Y or Z: as far as six decimals say nothing.
 pub(super) const AXIS_SLACK: f64 = 1.0e-6;
@@ -372,8 +376,8 @@ impl Reader<'_> {
         Some(())
     }
 
-    /// Whether an arc is not almost a whole turn of a helix: where its end is over its start but for rounding, and its rise
-    /// is more, the file may mean a turn or a plunge.
+    /// Whether an arc is not almost a whole turn: where its end is over its start but for rounding, the file may mean a turn, or a
+    /// plunge where it rises and next to nothing where it does not.
     fn goes_round(&mut self, arc: &Arc, chord: f64, span: Span) -> bool {
         if std::f64::consts::PI < arc.sweep().abs() || MISFIT_REFUSED < chord {
             return true;
@@ -387,6 +391,18 @@ impl Reader<'_> {
                 Diagnostic::refusal("arc-turn", message)
                     .at(span, "")
                     .hint("with its end over its start, to 0.00001 mm, an arc is a whole turn; a GOTO without a CIRCLE is a plunge"),
+            );
+            return false;
+        }
+        if chord < MISFIT_WARNED && arc.sweep().abs() < UNCLEAR_TURN {
+            let message = format!(
+                "this arc ends {chord:.5} mm beside its start: whether that is a whole turn of radius {:.3} or next to nothing it does not say",
+                arc.radius()
+            );
+            self.push(
+                Diagnostic::refusal("arc-turn", message)
+                    .at(span, "")
+                    .hint("with its end at its start, to 0.00001 mm, an arc is a whole turn; a GOTO without a CIRCLE is a step"),
             );
             return false;
         }

@@ -101,7 +101,10 @@ impl Cycle {
 /// What the arguments of a cycle state, in units of the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stated {
+    /// Below the point.
     depth: Option<f64>,
+    /// Whether FEDTO states it, which some systems count upwards.
+    fedto: bool,
     clear: Option<f64>,
     /// RAPTO, where it does not mean the same as CLEAR.
     rapto: Option<f64>,
@@ -120,6 +123,7 @@ impl Stated {
     fn or(self, before: Stated) -> Stated {
         Stated {
             depth: self.depth.or(before.depth),
+            fedto: if self.depth.is_some() { self.fedto } else { before.fedto },
             clear: self.clear.or(before.clear),
             rapto: self.rapto.or(before.rapto),
             retract: self.retract.or(before.retract),
@@ -199,7 +203,21 @@ impl Reader<'_> {
 
     /// The depth of a cycle, mm below the top of the hole.
     fn depth(&mut self, stated: &Stated, span: Span) -> Option<f64> {
-        let depth = stated.depth.map(|d| d.abs() * self.scale).filter(|d| 0.0 < *d && d.is_finite());
+        let depth = stated.depth.map(|d| d * self.scale);
+        if let Some(up) = depth.filter(|depth| *depth < 0.0 && depth.is_finite()) {
+            let message = format!("the cycle feeds to {} mm above its point", -up);
+            let other = if self.words.fedto < 0.0 { "positive" } else { "negative" };
+            let hint = if stated.fedto {
+                format!(
+                    "fedto = \"{other}\" in a table for --words, where the shop's files count below the point so"
+                )
+            } else {
+                "DEPTH counts downwards: below its point it is positive".to_owned()
+            };
+            self.push(Diagnostic::error("cycle-depth", message).at(span, "").hint(hint));
+            return None;
+        }
+        let depth = depth.filter(|depth| 0.0 < *depth && depth.is_finite());
         if depth.is_none() {
             self.push(Diagnostic::error("cycle-depth", "the cycle states no depth").at(span, "").hint(
                 "DEPTH or FEDTO states one; a number without a word needs its place in [cycles] of --words",
@@ -235,7 +253,7 @@ impl Reader<'_> {
             return None;
         };
         let (rapto, depth) =
-            (stated.rapto.unwrap_or(0.0) * self.scale, stated.depth.unwrap_or(0.0).abs() * self.scale);
+            (stated.rapto.unwrap_or(0.0) * self.scale, stated.depth.unwrap_or(0.0) * self.scale);
         let by_place = matches!(self.words.heights, CycleHeights::Iso4343 | CycleHeights::Generative);
         if by_place && stated.positional && (stated.retract.is_some() || rapto < 0.0) {
             let message = "RTRCTO, or a RAPTO below zero, in a cycle whose numbers have their places: from where it counts is not known";
@@ -382,7 +400,11 @@ impl Reader<'_> {
                         return None;
                     };
                     let twice = match name.as_str() {
-                        "DEPTH" | "FEDTO" => stated.depth.replace(x).is_some(),
+                        "DEPTH" => stated.depth.replace(x).is_some(),
+                        "FEDTO" => {
+                            stated.fedto = true;
+                            stated.depth.replace(x * self.words.fedto).is_some()
+                        }
                         // Of a cycle by places RAPTO is another number than its clearance.
                         "RAPTO" if stated.clear.is_some() => stated.rapto.replace(x).is_some(),
                         "CLEAR" | "RAPTO" => stated.clear.replace(x).is_some(),

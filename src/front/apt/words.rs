@@ -24,6 +24,7 @@ pub const KEYS: &[Key] = &[
     Key::value("movarc"),
     Key::value("circle_points"),
     Key::value("cycle_heights"),
+    Key::value("fedto"),
     Key::value("cycle_rapid"),
     Key::value("spindle_range"),
     Key::value("tool_register"),
@@ -40,6 +41,7 @@ struct File {
     movarc: Option<Spanned<String>>,
     circle_points: Option<Spanned<String>>,
     cycle_heights: Option<Spanned<String>>,
+    fedto: Option<Spanned<String>>,
     cycle_rapid: Option<Spanned<String>>,
     spindle_range: Option<Spanned<String>>,
     tool_register: Option<Spanned<String>>,
@@ -306,6 +308,9 @@ pub(super) enum Register {
 /// The senses of arcs, by the names that tables use.
 const HANDS: &[(&str, Hand)] = &[("right-hand", Hand::Right), ("left-hand", Hand::Left)];
 
+/// Which FEDTO lies below the point, by the names that tables use.
+const FEDTO: &[(&str, f64)] = &[("positive", 1.0), ("negative", -1.0)];
+
 /// What the heights of cycles count from, by the names that tables use.
 const HEIGHTS: &[(&str, CycleHeights)] = &[
     ("top", CycleHeights::Top),
@@ -344,6 +349,8 @@ pub(super) struct Words {
     cycles: BTreeMap<String, Vec<String>>,
     /// The sense of each statement of an arc, and whether a table for --words states it.
     hands: [(Hand, bool); 3],
+    /// The sign of a FEDTO below the point.
+    pub(super) fedto: f64,
     /// What the heights of cycles count from.
     pub(super) heights: CycleHeights,
     /// What RAPID within a cycle is, where that is stated.
@@ -365,6 +372,7 @@ impl Words {
             meanings: HashMap::new(),
             cycles: BTreeMap::new(),
             hands: [(Hand::Right, false), (Hand::Left, false), (Hand::Right, false)],
+            fedto: 1.0,
             heights: CycleHeights::Top,
             cycle_rapid: None,
             range_left_out: false,
@@ -425,6 +433,8 @@ impl Words {
         let what = "what the heights of a cycle count from";
         let heights = chosen(file.cycle_heights.as_ref(), HEIGHTS, what, &unknown, &mut found);
         self.heights = heights.unwrap_or(self.heights);
+        let what = "the sign of FEDTO";
+        self.fedto = chosen(file.fedto.as_ref(), FEDTO, what, &unknown, &mut found).unwrap_or(self.fedto);
         let what = "what RAPID within a cycle is";
         self.cycle_rapid =
             chosen(file.cycle_rapid.as_ref(), CYCLE_RAPID, what, &unknown, &mut found).or(self.cycle_rapid);
