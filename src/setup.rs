@@ -188,7 +188,7 @@ impl Setup {
                 lines.push(format!("PARK PLACE AT THE END, OF THE MACHINE: {}", places.join(", ")));
             }
             Some(LengthEnd::Left) => {
-                lines.push("THE LENGTH OF THE LAST TOOL STAYS IN FORCE: NO PARK PLACE".to_owned());
+                lines.push("LENGTH OF THE LAST TOOL STAYS IN FORCE".to_owned());
             }
         }
         if let Some([least, most]) = self.path_minutes {

@@ -69,6 +69,8 @@ pub struct Dialect {
     pub adds_shift: &'static [&'static str],
     /// What its words would make of the lines of a machine file, where that is wrong.
     pub lines: fn(&Machine) -> Diagnostics,
+    /// The words by which a move counts in machine coordinates, or goes to a fixed place.
+    pub in_machine: &'static [&'static str],
     /// The words that end the length of a tool.
     pub ends_length: &'static [&'static str],
     /// Whether F can be inverse time.

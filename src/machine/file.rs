@@ -1,6 +1,7 @@
 //! Machine files as text: keys, values, and what is wrong with them.
 
 mod counts;
+mod home;
 mod parts;
 mod spelling;
 
@@ -164,7 +165,7 @@ impl Reader {
         let own = file.orientation.unwrap_or_default();
         let orientation = self.orientation(&own, dialect, base.map(|b| b.orientation))?;
         let mut frame = self.frame(file.program.unwrap_or_default(), base.map(|b| &b.frame), dialect)?;
-        frame.home_axis = self.home_axis(&frame);
+        frame.home_axis = self.home_axis(&frame, dialect);
         self.turns_as_stated(&frame, orientation, dialect);
         self.tilts(&frame);
         self.lengths(&frame);

@@ -380,7 +380,7 @@ fn where_nothing_is_known_to_be_clear_is_refused() {
         // An undercut that nothing leaves.
         (format!("{HEAD}RAPID\nGOTO/0,0,60,0,0,1\nGOTO/0,0,0,0.8,0,-0.6\nFINI\n"), "safe-height"),
         // Half a turn has no plane.
-        (format!("{HEAD}RAPID\nGOTO/0,0,60,1,0,0\nGOTO/0,0,60,-1,0,0\nFINI\n"), "direction-opposite"),
+        (format!("{HEAD}RAPID\nGOTO/0,0,60,1,0,0\nGOTO/0,0,50,-1,0,0\nFINI\n"), "direction-opposite"),
         // Whether a tilt holds behind MULTAX/OFF or another tool no page says.
         (format!("{HEAD}RAPID\nGOTO/0,0,60,0.6,0,0.8\nMULTAX/OFF\nGOTO/0,0,0\nFINI\n"), "tool-axis-stale"),
         (format!("{HEAD}RAPID\nGOTO/0,0,60,0.6,0,0.8\nLOADTL/2\nGOTO/0,0,0\nFINI\n"), "tool-axis-stale"),

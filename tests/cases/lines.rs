@@ -75,7 +75,7 @@ fn the_length_of_a_mazak_ends_at_the_park_place_or_not_at_all() {
     // Between two tools the next length replaces the one before.
     let planes = of_cl("nx-planes", &parked).expect("a program");
     assert_eq!((planes.matches("G49").count(), planes.matches(" M6").count()), (1, 2), "{planes}");
-    assert!(planes.contains("G0 G53 Y0.\nG49\nG69\n"), "{planes}");
+    assert!(planes.contains("G69\nG0 G53 X-500.\nG0 G53 Y0.\nG49\nM5\n"), "{planes}");
     assert!(!of_cl("nx-planes", &built_in).expect("a program").contains("G49"));
     // Where a parameter says that it moves nothing, it stands with Z at home.
     let still = machine("extends = \"mazak\"\n[program]\nlength_end_moves = false\n");
@@ -190,6 +190,42 @@ fn a_home_that_names_its_axis_is_the_home_of_that_axis() {
     assert!(!text(&along_y, &own).contains("G28"), "Y does not retract by the line of Z");
 }
 
+/// A retraction to a place of the work is none.
+#[test]
+fn a_retraction_counts_in_machine_coordinates() {
+    for (name, home) in [
+        ("mazak", "G0 Z-50."),
+        ("mazak", "G0 {home}"),
+        ("sinumerik", "G0 Z200"),
+        ("heidenhain", "L Z+200 R0 FMAX"),
+        ("heidenhain", "L {home} R0 FMAX"),
+    ] {
+        let text = format!("extends = \"{name}\"\n[program]\nhome = [\"{home}\"]\n");
+        let ids: Vec<&str> =
+            Machine::parse(&text, SourceId::INPUT).expect_err(home).0.iter().map(|d| d.id).collect();
+        assert!(ids.contains(&"home-coordinates"), "{name} {home}: {ids:?}");
+    }
+    for (name, home) in [
+        ("sinumerik", "G0 G153 {home} D0"),
+        ("heidenhain", "L {home} R0 FMAX M92"),
+        ("mazak", "g0 g053 {home}"),
+    ] {
+        let text = format!("extends = \"{name}\"\n[program]\nhome = [\"{home}\"]\n");
+        assert!(Machine::parse(&text, SourceId::INPUT).is_ok(), "{name} {home}");
+    }
+}
+
+/// The length of a tilted tool ends when it is upright again: in the plane it would move along another axis.
+#[test]
+fn the_length_of_a_tilted_tool_ends_behind_its_plane() {
+    let parked = machine(&format!("extends = \"mazak\"\n{PARK}"));
+    let text = of_cl("nx-planes", &parked).unwrap_or_else(|e| panic!("{e:?}"));
+    let (end, plane) = (text.rfind("G49").expect("G49"), text.rfind("G69").expect("G69"));
+    assert!(plane < end, "{text}");
+    let behind: Vec<&str> = text[plane..end].lines().collect();
+    assert_eq!(behind, ["G69", "G0 G53 X-500.", "G0 G53 Y0."], "{text}");
+}
+
 #[test]
 fn lines_name_the_axes_of_the_machine() {
     for (rotary, words) in
@@ -216,4 +252,31 @@ fn lines_name_the_axes_of_the_machine() {
     );
     assert_eq!(refused(&format!("{none}footer = [\"G0A0.\", \"M30\"]")), ["axis-unknown"]);
     assert!(refused(&format!("{none}footer = [\"G52 {{axes}}\", \"G65 P9001 A1.\", \"M30\"]")).is_empty());
+}
+
+/// Below a cut the tool would come to the work at rapid, turning, from wherever it is.
+#[test]
+fn the_tool_turns_above_what_is_cut() {
+    let start = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/500,RPM,CLW\nFEDRAT/100,MMPM\n";
+    let flat = format!("{start}GOTO/0,0,0,0.5,0,0.8660254\nGOTO/10,0,0,0.6,0,0.8\nFINI\n");
+    let level = format!(
+        "{start}RAPID\nGOTO/50,0,-30,1,0,0\nGOTO/50,10,-30,0.9950042,0.0998334,0\nGOTO/50,20,-30,1,0,0\nFINI\n"
+    );
+    let clear = level.replacen("GOTO/50,0,-30", "GOTO/80,0,-20", 1);
+    let clear = clear.replace("FINI", "RAPID\nGOTO/80,0,-20,1,0,0\nFINI");
+    assert_ne!(clear, level);
+    for name in ["sinumerik", "heidenhain", "mazak"] {
+        let keys = |height: &str| format!("extends = \"{name}\"\n{PARK}[orientation]\n{height}\n");
+        let refused = |text: &str, height: &str| {
+            let errors = compiled(text, &machine(&keys(height)), None).map(|output| output.text);
+            errors.expect_err("it is refused").0[0].id
+        };
+        assert_eq!(refused(&flat, "safe_height = -20.0"), "safe-height", "{name}");
+        assert_eq!(refused(&flat, ""), "safe-height", "{name}");
+        assert_eq!(refused(&level, ""), "safe-height", "{name}");
+        let above = compiled(&flat, &machine(&keys("safe_height = 20.0")), None);
+        assert!(above.is_ok(), "{name}: {above:?}");
+        let above = compiled(&clear, &machine(&keys("")), None);
+        assert!(above.is_ok(), "{name}: {above:?}");
+    }
 }

@@ -146,7 +146,7 @@ fn a_report_names_the_line() {
         (
             "long-cone/mazak-g062.eia",
             [Edit::Drop("K5.8426", 4)],
-            "38: Nurbs: the blocks with K alone are not as many as P",
+            "37: Nurbs: the blocks with K alone are not as many as P",
         ),
     ] {
         let reports: Vec<String> = damaged(file, &edits).iter().map(Violation::to_string).collect();

@@ -96,6 +96,7 @@ pub const DIALECT: Dialect = Dialect {
     replaces_shift: None,
     adds_shift: &[],
     lines: |_| Diagnostics::new(),
+    in_machine: &["M91", "M92", "M140"],
     ends_length: &[],
     inverse_time: false,
     round: Round::Step,

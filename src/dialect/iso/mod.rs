@@ -111,6 +111,7 @@ pub const MAZAK: Dialect = Dialect {
     replaces_shift: None,
     adds_shift: &["G91", "G92", "G51", "G51.1", "G68"],
     lines: lines::check,
+    in_machine: &["G53", "G28", "G30"],
     ends_length: &["G49"],
     inverse_time: true,
     round: Round::Place,

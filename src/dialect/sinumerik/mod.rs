@@ -138,6 +138,7 @@ pub const DIALECT: Dialect = Dialect {
     replaces_shift: Some("TRANS"),
     adds_shift: &["ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR", "G58", "G59", "G91"],
     lines: |_| Diagnostics::new(),
+    in_machine: &["SUPA", "G53", "G153", "G74", "G75"],
     ends_length: &["D0"],
     inverse_time: false,
     round: Round::Shortest,

@@ -39,7 +39,11 @@ pub(super) fn park(intent: &mut Intent, machine: &Machine) {
     let over = park.into_iter().flat_map(|[_, x, y]| [Step::Home(x), Step::Home(y)]);
     let ended = over.chain([Step::Auxiliary(Auxiliary::LengthEnd)]).map(|step| Located { step, span });
     let ended: Vec<Located<f64, Curve>> = ended.collect();
-    let behind = last + 1;
+    // Behind the plane that a tilted tool is turned upright by: in it the tool would turn at another height.
+    let plane = |located: &&Located<f64, Curve>| {
+        matches!(located.step, Step::Auxiliary(Auxiliary::Plane(_) | Auxiliary::PlaneEnd))
+    };
+    let behind = last + 1 + steps[last + 1..].iter().take_while(plane).count();
     steps.splice(behind..behind, ended);
 }
 

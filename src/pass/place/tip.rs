@@ -26,6 +26,8 @@ struct Walk {
     first: usize,
     safe: f64,
     stated: bool,
+    /// The greatest Z of all cuts.
+    cut: f64,
     all: Vec<Located<f64, Curve>>,
     led: bool,
     called: bool,
@@ -45,11 +47,13 @@ pub(super) fn lead(intent: &mut Intent, machine: &Machine) -> Result<(), Diagnos
     }
     let steps = std::mem::take(&mut intent.program.steps);
     let stated = machine.orientation.safe_height;
+    is_clear(&steps, stated)?;
     let mut walk = Walk {
         axes,
         first,
         safe: stated.unwrap_or_else(|| highest(&steps)),
         stated: stated.is_some(),
+        cut: highest_cut(&steps),
         all: Vec::with_capacity(steps.len() + 8),
         led: false,
         called: false,
@@ -138,8 +142,9 @@ impl Walk {
         }
         self.led = true;
         let above = self.above(place, span)?;
-        if above == *place && cut.is_some() && !self.stated {
-            let message = "the first move of this tool cuts, and nothing says where the tool may turn before";
+        let steep = direction::unit(place, self.first)[self.first + 2] < STEEP;
+        if above == *place && !self.stated && (cut.is_some() || (steep && place[Z] <= self.cut)) {
+            let message = "the first move of this tool is as low as a cut, and nothing says where the tool may turn before";
             return Err(Diagnostic::refusal("safe-height", message)
                 .at(span, "")
                 .hint(
@@ -208,6 +213,41 @@ impl Walk {
         above[Z] = self.safe;
         Ok(above)
     }
+}
+
+/// Whether what is stated as safe height lies above all that is cut.
+///
+/// # Errors
+/// It does not, so that the tool would come to the work at rapid, from wherever it is.
+fn is_clear(steps: &[Located<f64, Curve>], stated: Option<f64>) -> Result<(), Diagnostics> {
+    let Some(height) = stated else { return Ok(()) };
+    for located in steps {
+        let z = highest_cut(std::slice::from_ref(located));
+        if height < z {
+            let message = format!("safe_height is {height} mm, and here the tool cuts at Z {z}");
+            return Err(Diagnostic::refusal("safe-height", message)
+                .at(located.span, "")
+                .hint("state [orientation] safe_height above all cuts")
+                .into());
+        }
+    }
+    Ok(())
+}
+
+/// The greatest Z that a cut leads to.
+fn highest_cut(steps: &[Located<f64, Curve>]) -> f64 {
+    let to = |curve: &Curve| match curve {
+        // Where it begins the move before has brought the tool.
+        Curve::Lines(line) => line.points().map(|point| point[Z]).fold(f64::NEG_INFINITY, f64::max),
+        Curve::Arc(_)
+        | Curve::Polynomial(_)
+        | Curve::Nurbs(_)
+        | Curve::Formula(_)
+        | Curve::Through(..)
+        | Curve::Logarithmic(_) => curve.greatest(Z),
+    };
+    let cuts = steps.iter().filter_map(|located| located.step.cut());
+    cuts.map(|cut| to(&cut.curve)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The greatest Z that the tip goes to.
