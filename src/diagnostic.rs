@@ -9,8 +9,12 @@
 //!  "end_line":3,"end_column":5,"label":"…","hints":["…"]}
 //! ```
 //!
+//! What each id means stands in the [`registry`], and `splinepost explain ID` prints it.
+//!
 //! Columns count characters from 1; `file` to `label` are null where a diagnostic has no place. Where more than one place belongs
 //! to it, as in two programs that differ, `others` has them: `[{"file":"b.h","line":7,…,"label":"…"}]`.
+
+pub mod registry;
 
 use crate::source::{LineColumn, Sources, Span};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -56,6 +60,10 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     fn new(severity: Severity, id: &'static str, message: impl Into<String>) -> Diagnostic {
+        debug_assert!(
+            registry::find(id).is_some_and(|entry| entry.severities.contains(&severity)),
+            "`{id}` is not in the registry as {severity:?}"
+        );
         Diagnostic {
             severity,
             id,

@@ -255,6 +255,59 @@ fn lists_and_dumps_are_printed() {
 }
 
 #[test]
+fn diagnostics_are_explained() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let printed = |arguments: &[&str]| {
+        let output = splinepost(arguments, dir.path());
+        assert_eq!((code(&output), stderr(&output).as_str()), (0, ""), "{arguments:?}");
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    let page = printed(&["explain", "arc-sense"]);
+    assert!(
+        page.starts_with("arc-sense: error (exit code 2), warning (exit code 0)\n\nThe arcs of the file")
+    );
+    assert!(page.lines().all(|line| line.len() <= 88) && page.contains("--words"), "{page}");
+    // As it stands in a message.
+    assert_eq!(printed(&["explain", "error[arc-sense]:"]), page);
+    assert!(printed(&["explain", "arc-sweep", "--format", "json"]).starts_with("{\"id\":\"arc-sweep\","));
+    let all = splinepost::diagnostic::registry::all();
+    let listed = printed(&["explain"]);
+    assert!(
+        all.iter().all(|entry| listed.contains(&format!("  {} ", entry.id)) && listed.contains(entry.says))
+    );
+    let lines = printed(&["explain", "--format", "json"]);
+    let ids = lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
+    assert!(ids.map(|value| value["id"].clone()).eq(all.iter().map(|entry| entry.id)));
+    let output = splinepost(&["explain", "arc-sens"], dir.path());
+    assert_eq!(code(&output), 2);
+    let told = stderr(&output);
+    assert!(
+        told.contains("error[diagnostic-unknown]") && told.contains("did you mean `arc-sense` or"),
+        "{told}"
+    );
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn what_is_asked_of_the_command_is_told_by_its_id() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path();
+    let told = |arguments: &[&str], id: &str, exit: i32| {
+        let output = splinepost(arguments, at);
+        let told = stderr(&output);
+        assert!(code(&output) == exit && told.contains(&format!("[{id}]")), "{arguments:?}: {told}");
+    };
+    told(&["man", "nonsense"], "command-unknown", 2);
+    let text = fs::read_to_string(mill()).expect("the input");
+    fs::write(at.join("part.toml"), text.replace("feed = ", "approach_feed = ")).expect("written");
+    told(&["check", "part.toml"], "process-incomplete", 0);
+    assert_eq!(code(&splinepost(&["compile", &mill(), "--to", "sinumerik", "-o", "p.mpf"], at)), 0);
+    let other = folder("fixtures/compile/cylinder/input.toml").display().to_string();
+    let plot = ["plot", "p.mpf", "--to", "sinumerik", "--against", &other, "-o", "p.svg"];
+    told(&plot, "figure-left-out", 0);
+}
+
+#[test]
 fn cl_data_goes_the_same_way() {
     let folder = tempfile::tempdir().expect("a folder");
     let within = folder.path();
@@ -444,5 +497,6 @@ fn an_input_without_end_is_refused() {
         .output()
         .expect("it runs");
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("standard input is larger than 512 MiB"), "{}", stderr(&output));
+    let told = stderr(&output);
+    assert!(told.contains("error[file-too-large]: standard input is larger than 512 MiB"), "{told}");
 }

@@ -10,6 +10,7 @@
 //! | `paper` | the table of the paper, row by row |
 //! | `roundtrip` | what is written reads back to the same text |
 //! | `robust` | nothing panics |
+//! | `diagnostics` | the registry of diagnostics: ids in step with the source, the page, what shows each |
 //! | `diff` | two programs beside each other, and every change found where it is |
 //! | `damage` | a program changed in any word is refused |
 //! | `grammar` | `grammar/*.ebnf` in step with readers, writers and keys |
@@ -33,6 +34,7 @@ mod apt;
 mod cases;
 mod cli;
 mod damage;
+mod diagnostics;
 mod diff;
 mod errors;
 mod exact;

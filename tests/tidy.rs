@@ -4,7 +4,7 @@ use crate::support::folder;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-fn files(under: &Path, extension: &str) -> Vec<PathBuf> {
+pub(crate) fn files(under: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(under).expect("a folder").flatten() {
         let path = entry.path();
@@ -18,12 +18,12 @@ fn files(under: &Path, extension: &str) -> Vec<PathBuf> {
     found
 }
 
-fn source(path: &Path) -> String {
+pub(crate) fn source(path: &Path) -> String {
     fs::read_to_string(path).expect("UTF-8")
 }
 
 /// The code without its tests and comments.
-fn code(path: &Path) -> String {
+pub(crate) fn code(path: &Path) -> String {
     if path.ends_with("tests.rs") {
         return String::new();
     }

@@ -5,6 +5,7 @@ mod compile;
 mod completions;
 mod diff;
 mod dump;
+mod explain;
 mod interpolate;
 mod io;
 mod machines;
@@ -56,6 +57,7 @@ enum Command {
     Check(check::Check),
     Dump(dump::Dump),
     Machines(machines::Machines),
+    Explain(explain::Explain),
     Schema(schema::Schema),
     Completions(completions::Completions),
     Man(man::Man),
@@ -100,6 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> ExitCode {
         Command::Check(command) => command.run(&console, &mut sources),
         Command::Dump(command) => command.run(&console, &mut sources),
         Command::Machines(command) => command.run(&console),
+        Command::Explain(command) => command.run(&console),
         Command::Schema(command) => command.run(&console),
         Command::Completions(command) => command.run(&console),
         Command::Man(command) => command.run(&console),
