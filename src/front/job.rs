@@ -102,6 +102,8 @@ pub struct Placed {
     pub span: Span,
     /// How far it may be from what the input states, mm.
     pub error: f64,
+    /// Whether the retract axis rests where it is clear: nothing has said yet where it cuts.
+    pub rests: bool,
 }
 
 /// What the machine needs beside the path.
@@ -270,9 +272,11 @@ impl Reader<'_> {
     ) -> Vec<Placed> {
         let mut known: [Option<f64>; MAX_AXES] = [None; MAX_AXES];
         let mut warned = false;
+        let mut rests = retract.is_some();
         let mut placed = Vec::with_capacity(shapes.len());
         for shape in shapes {
             let mut rest = [0.0; MAX_AXES];
+            rests &= retract.is_some_and(|(axis, _)| shape.names().all(|name| name != axis));
             for i in 0..axes.count() {
                 let name = axes.name(i);
                 if shape.axes.contains(&name) {
@@ -307,7 +311,7 @@ impl Reader<'_> {
                     },
                 }
             }
-            let one = shape.place(axes, &rest);
+            let one = Placed { rests, ..shape.place(axes, &rest) };
             for i in 0..axes.count() {
                 known[i] = Some(one.end[i]);
             }

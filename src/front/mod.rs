@@ -6,8 +6,11 @@
 //! | [`cutter`] | a conical cutter as its drawing states it |
 //! | [`job`] | curves, with feed and tool |
 //! | [`curves`] | the curve files that jobs name: DXF, IGES, STEP |
+//!
+//! `clear` holds retractions to be clear of what is cut.
 
 pub mod apt;
+mod clear;
 pub mod curves;
 pub mod cutter;
 pub mod job;

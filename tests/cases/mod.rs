@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `bounds` | what is stated of lines, against the distance that is there |
 //! | `cl` | CL data: what its statements mean, as it stands in the program of every machine |
+//! | `clear` | retractions, which are clear of all that is cut, or refused |
 //! | `curves` | curve files: how long their paths are, or why they are refused |
 //! | `damaged` | the remarks at which an operator restarts a program, each with every fault |
 //! | `generated` | random inputs on random machines, none of which compile refuses by its own proof |
@@ -15,6 +16,7 @@
 
 mod bounds;
 mod cl;
+mod clear;
 mod curves;
 mod damaged;
 mod generated;

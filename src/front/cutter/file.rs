@@ -146,7 +146,7 @@ pub(super) struct ProcessTable {
     /// mm/min of the linear axes on their way back to the start of a path. Default: rapid traverse.
     #[schemars(with = "Option<f64>")]
     pub(super) return_feed: Option<Spanned<f64>>,
-    /// Where it is clear, reached before X returns and before A turns.
+    /// Where it is clear, reached before X returns and before A turns; beyond all that is cut.
     #[schemars(with = "Option<RetractTable>")]
     pub(super) retract: Option<Spanned<RetractTable>>,
     /// rev/min; without it no spindle word is written.
@@ -214,8 +214,8 @@ pub(super) struct InfeedTable {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RetractTable {
-    /// X, Y or Z.
-    #[schemars(with = "Option<String>", extend("enum" = ["X", "Y", "Z"]))]
+    /// Y or Z.
+    #[schemars(with = "Option<String>", extend("enum" = ["Y", "Z"]))]
     pub(super) axis: Option<Spanned<String>>,
     /// Absolute position, mm.
     #[schemars(with = "Option<f64>")]

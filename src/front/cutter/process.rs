@@ -4,7 +4,7 @@ use super::file::{CorrectionTable, InfeedTable, ProcessTable, RetractTable};
 use super::{Infeed, MAX_PASSES, Order, Process, Reader};
 use crate::geom::logcurve::{LogCurve, Measure};
 use crate::source::Span;
-use crate::units::{Axes, Axis, Kind};
+use crate::units::{Axes, Axis};
 use toml::Spanned;
 
 /// How paths are run.
@@ -107,14 +107,16 @@ impl Reader {
             match (axis, to) {
                 (Some(axis), Some(to)) => {
                     let found = Axis::new(axis.get_ref()).and_then(|name| Axes::xyza().index_of(name));
-                    let linear = found.filter(|i| Axes::xyza().kind(*i) == Kind::Linear);
-                    if linear.is_none() {
-                        self.error("retract-axis", "the retract axis is X, Y or Z", axis.span());
+                    // Along X one of the ways there and back would run through the whole flute.
+                    let across = found.filter(|i| *i == 1 || *i == 2);
+                    if across.is_none() {
+                        let message = "the retract axis is Y or Z: X runs along the cutter";
+                        self.error("retract-axis", message, axis.span());
                     }
                     let to = self.number("to", to, "retract-range", "must lie within a million mm", |x| {
                         x.abs() < 1.0e6
                     });
-                    process.retract = linear.map(|axis| (axis, to));
+                    process.retract = across.map(|axis| (axis, to));
                 }
                 _ => self.error(
                     "retract-missing",

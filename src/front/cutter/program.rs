@@ -18,6 +18,7 @@
 use super::{CutterJob, Infeed, Order, Process, parse};
 use crate::decimal::Decimal;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::front::clear::{Reach, Retraction, Side};
 use crate::geom::deviation::Bound;
 use crate::geom::logcurve::Measure;
 use crate::ir::{Curve, Cut, Intent, Located, Logarithmic, Polyline, Program, Role, Shift, Step, ToolCall};
@@ -51,6 +52,9 @@ pub fn parse_program(source: &Source, id: SourceId) -> Result<Intent, Diagnostic
     found.into_result()?;
     Ok(job.intent())
 }
+
+/// The index of Z among X Y Z A.
+const Z: usize = 2;
 
 /// The greatest X that a flute may reach: an overrun ends within two steps of the end.
 fn flute_end(flute: &Logarithmic) -> f64 {
@@ -90,37 +94,62 @@ impl CutterJob {
         passes
     }
 
-    /// What is wrong with the retract position: it lies on the way of the path, or behind it as the stock sees it.
+    /// On which side of the path it is clear along an axis, and how that is known.
+    fn clear_side(&self, axis: usize) -> (Side, &'static str) {
+        match self.process.infeed.filter(|infeed| infeed.axis == axis) {
+            Some(infeed) if infeed.step < 0.0 => {
+                (Side::Less, "the sign of infeed step says on which side of the finished path the stock is")
+            }
+            Some(_) => (
+                Side::Greater,
+                "the sign of infeed step says on which side of the finished path the stock is",
+            ),
+            None if axis == Z => (
+                Side::Greater,
+                "Z grows away from the work; an infeed in Z with sign = -1 says that the stock is on the other side",
+            ),
+            None => (
+                Side::Greater,
+                "Y grows away from the cutter's axis; an infeed in Y with sign = -1 says that the stock is on the other side",
+            ),
+        }
+    }
+
+    /// What is wrong with the retract position: it is not clear of the path where the correction is zero. With a correction it
+    /// is as clear ([`CutterJob::clear`]).
     fn retract_not_clear(&self) -> Option<Diagnostic> {
         let (axis, to) = self.process.retract?;
-        let name = Axes::xyza().name(axis);
-        let mut reach = (f64::INFINITY, f64::NEG_INFINITY);
+        let correction = self.correction();
+        let mut cut = Reach::NONE;
         for flute in &self.flutes {
             for pass in self.passes() {
-                let curve = flute.curve.with_shift(pass.shift);
+                let shift = [pass.shift[0] - correction[0], pass.shift[1] - correction[1]];
+                let curve = flute.curve.with_shift(shift);
                 for x in [curve.start(), flute_end(flute)] {
-                    let at = curve.position(x)[axis];
-                    reach = (reach.0.min(at), reach.1.max(at));
+                    cut.take(curve.position(x)[axis]);
                 }
             }
         }
-        if reach.0 <= to && to <= reach.1 {
-            let message = format!("{name} {to} lies on the way that {name} takes over the cutter");
-            return Some(
-                Diagnostic::error("retract-not-clear", message)
-                    .at(self.process.span, "")
-                    .hint("retract to a position that the path does not reach"),
-            );
-        }
-        let infeed = self.process.infeed.filter(|infeed| infeed.axis == axis)?;
-        let through = (0.0 < infeed.step) != (reach.1 < to);
-        through.then(|| {
-            let message =
-                format!("{name} retracts through the work: the infeed's stock is on its other side");
-            Diagnostic::error("retract-through-work", message)
-                .at(self.process.span, "")
-                .hint("the sign of infeed step says on which side of the finished path the stock is")
-        })
+        let (side, why) = self.clear_side(axis);
+        Retraction { axis: Axes::xyza().name(axis), to, span: self.process.span }.not_clear(cut, side, why)
+    }
+
+    /// Which axis retracts, and where to with the correction as it stands.
+    ///
+    /// The parameter shifts the retraction with the path, and may be set to zero at the machine: one that leads away from the
+    /// work is added, so that the tool is never nearer to the work than the position that was asked for, whatever from
+    /// zero to its value the parameter is.
+    fn clear(&self) -> Option<(usize, f64)> {
+        let (axis, to) = self.process.retract?;
+        let shift = match self.process.correction {
+            Some((other, value)) if other == axis => value,
+            Some(_) | None => 0.0,
+        };
+        let away = match self.clear_side(axis).0 {
+            Side::Greater => shift.max(0.0),
+            Side::Less => shift.min(0.0),
+        };
+        Some((axis, to + away))
     }
 
     /// The program, without the moves that feed and retract would allow where those are missing.
@@ -184,12 +213,12 @@ impl CutterJob {
     /// One pass over one flute.
     fn section(&self, flute: usize, pass: &Pass, add: &mut impl FnMut(Step<f64, Curve>)) {
         let axes = Axes::xyza();
-        let Process { feed, approach_feed, return_feed, retract, correction, .. } = self.process;
+        let Process { feed, approach_feed, return_feed, correction, .. } = self.process;
         let log = &self.flutes[flute];
         let path = Logarithmic { curve: log.curve.with_shift(pass.shift), ..log.clone() };
         let angle = Decimal::round(path.curve.index, 4).unwrap_or_default();
         add(Step::Comment(format!("FLUTE {} OF {}, A {angle}{}", flute + 1, self.flutes.len(), pass.name)));
-        let Some((clear_axis, clear)) = retract else {
+        let Some((clear_axis, clear)) = self.clear() else {
             add(Step::Cut(Cut { feed, role: Role::Path, curve: Curve::Logarithmic(path) }));
             return;
         };

@@ -76,6 +76,7 @@ impl Shape {
                     end: conic.end,
                     span: self.span,
                     error: self.error,
+                    rests: false,
                 };
             }
         };
@@ -126,7 +127,7 @@ impl Shape {
             // No kind of curve makes these; arcs of files are placed above.
             curve @ (Curve::Arc(_) | Curve::Through(..) | Curve::Logarithmic(_)) => (curve, *rest, *rest),
         };
-        Placed { curve, start, end, span: self.span, error: self.error }
+        Placed { curve, start, end, span: self.span, error: self.error, rests: false }
     }
 }
 

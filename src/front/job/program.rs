@@ -14,6 +14,7 @@
 
 use super::{Job, MEET, Placed, parse};
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::front::clear::{Reach, Retraction, Side};
 use crate::geom::bezier::Bezier;
 use crate::geom::deviation::Bound;
 use crate::ir::{Curve, Cut, Described, Intent, Located, Polyline, Program, Role, Step, ToolCall};
@@ -62,19 +63,22 @@ impl Job {
         self.curves.chunk_by(|before, after| gap(&before.end, &after.start) <= MEET).collect()
     }
 
-    /// What is wrong with the retract position: it lies on the way of the curves.
-    fn retract_not_clear(&self) -> Option<Diagnostic> {
-        let (axis, to) = self.process.retract?;
-        let i = self.axes.index_of(axis)?;
-        let mut reach = (f64::INFINITY, f64::NEG_INFINITY);
-        for placed in &self.curves {
-            let mut own = (f64::INFINITY, f64::NEG_INFINITY);
-            let mut take = |point: &Position| own = (own.0.min(point[i]), own.1.max(point[i]));
+    /// Where an axis is along the curves. Those that rest where it is clear were warned of.
+    fn reach(&self, i: usize) -> Reach {
+        let mut cut = Reach::NONE;
+        for placed in self.curves.iter().filter(|placed| !placed.rests) {
+            let mut take = |point: &Position| cut.take(point[i]);
             take(&placed.start);
             match &placed.curve {
                 Curve::Lines(line) | Curve::Through(_, line) => line.points().for_each(|point| take(&point)),
-                Curve::Polynomial(pieces) | Curve::Formula(Described { pieces, .. }) => {
+                Curve::Polynomial(pieces) => {
                     pieces.iter().flat_map(Bezier::control_points).for_each(take);
+                }
+                Curve::Formula(Described { pieces, bound, .. }) => {
+                    for point in pieces.iter().flat_map(Bezier::control_points) {
+                        cut.take(point[i] - bound[i]);
+                        cut.take(point[i] + bound[i]);
+                    }
                 }
                 Curve::Nurbs(nurbs) => nurbs.points().iter().for_each(take),
                 Curve::Arc(arc) => {
@@ -85,16 +89,30 @@ impl Job {
                 // No job has these.
                 Curve::Logarithmic(_) => {}
             }
-            // A curve that rests there was warned of.
-            if own != (to, to) {
-                reach = (reach.0.min(own.0), reach.1.max(own.1));
-            }
         }
-        (reach.0 <= to && to <= reach.1).then(|| {
-            let message = format!("{axis} {to} lies on the way that {axis} takes along the curves");
-            Diagnostic::error("retract-not-clear", message)
-                .at(self.process.span, "")
-                .hint("retract to a position that the curves do not reach")
+        cut
+    }
+
+    /// What is wrong with the retract position: it is not clear of the curves, or the way to it is not.
+    fn retract_not_clear(&self) -> Option<Diagnostic> {
+        let (axis, to) = self.process.retract?;
+        let i = self.axes.index_of(axis)?;
+        let cut = self.reach(i);
+        let retraction = Retraction { axis, to, span: self.process.span };
+        if axis.as_str().starts_with('Z') {
+            return retraction.not_clear(cut, Side::Greater, "Z grows away from the work");
+        }
+        let side = retraction.side(cut);
+        let known = retraction.not_clear(cut, side, "the curves do not reach it");
+        known.or_else(|| {
+            self.sections().into_iter().filter(|section| section.iter().any(|placed| !placed.rests)).find_map(
+                |section| {
+                    let (first, last) = (&section[0], &section[section.len() - 1]);
+                    // A formula's pieces are off by their bound.
+                    let off = MEET + first.error.max(last.error);
+                    retraction.through(cut, [first.start[i], last.end[i]], off, first.span)
+                },
+            )
         })
     }
 

@@ -119,7 +119,7 @@ fn what_is_wrong_is_named() {
     assert_eq!(with("degree = 2\n", ""), ["key-missing"]);
     assert_eq!(with("kind = \"nurbs\"", "# kind"), ["key-missing"]);
     assert_eq!(with("[[10, 0], [10, 10], [0, 10]]", "[[1, 0], [1, 0], [1, 0]]"), ["curve-empty"]);
-    assert_eq!(ids(&format!("{}{QUARTER}", PROCESS.replace("50", "-2"))), [""; 0]);
+    assert_eq!(ids(&format!("{}{QUARTER}", PROCESS.replace("50", "-2"))), ["retract-not-clear"]);
     assert_eq!(ids(QUARTER), ["feed-missing", "retract-missing"]);
     assert_eq!(ids(PROCESS), ["curve-missing"]);
     let x = PROCESS.replace("axis = \"Z\", to = 50", "axis = \"X\", to = 5");
